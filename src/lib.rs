@@ -1,0 +1,18 @@
+//! Crowdquilt stitches motion capture into crowds.
+//!
+//! The modules are the stages of the pipeline and read top to bottom; a stage
+//! uses only those above it (and [`stage`], [`export`] and [`check`] use no solver).
+
+pub mod check;
+pub mod container;
+pub mod deform;
+pub mod error;
+pub mod export;
+pub mod geom;
+pub mod motion;
+pub mod patch;
+pub mod samples;
+pub mod stage;
+pub mod tiling;
+
+pub use error::{Error, Result};

@@ -1,0 +1,17 @@
+//! Skeleton, pose, clip, take; importers, retargeting, foot plants.
+
+mod body;
+pub mod bvh;
+mod clip;
+pub mod ik;
+mod path;
+mod skeleton;
+pub mod take;
+
+pub use body::{BODY_CAPSULES, BodyCapsule, BodyPart, body_capsules};
+pub use clip::Clip;
+pub use path::{Foot, Motion, MotionPath, Plant};
+pub use skeleton::{JOINT_COUNT, Joint, JointId, Skeleton, canonical, joint};
+
+/// Samples per second of all motion inside the system.
+pub const FPS: f32 = 30.0;

@@ -1,0 +1,196 @@
+//! The crowd file (`*.crowd`, magic `CQCROWD`): a [container](crate::container).
+//!
+//! Header: `fps`, `seed`, `skeleton` (joints with name, parent, offset, tip), `domain` (region, obstacles: `points`;
+//! `last_frame`), `instances` (kind), `set` (the patch set's header, see [`crate::patch`]) and `characters`: each has
+//! `begin` (first frame), `frames`, and `fragments` (instance, role, begin, end, `samples` = number of path samples).
+//!
+//! Arrays, all characters one after the other: `root` f32 x,y,z per frame; `rotations` i16 x,y,z,w per frame and joint
+//! (value / 32767; hips global, others local); `path_points` f32 x,z and `path_headings` f32 per path sample of the
+//! fragments; and the patch set's arrays with the prefix `set_`.
+
+use std::path::Path;
+
+use glam::{Quat, Vec2, Vec3};
+
+use super::{Character, Crowd, DomainInfo, FragmentUse, Instance};
+use crate::container::{Reader, Writer, write_whole};
+use crate::motion::{FPS, JOINT_COUNT, Skeleton, canonical};
+use crate::patch::{PatchSet, pack_rotation, unpack_rotation};
+use crate::{Error, Result};
+
+const MAGIC: &[u8; 8] = b"CQCROWD\0";
+const VERSION: u32 = 1;
+
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Header {
+    fps: f32,
+    seed: u64,
+    skeleton: Skeleton,
+    domain: DomainInfo,
+    instances: Vec<Instance>,
+    characters: Vec<CharacterHeader>,
+    set: serde_json::Value,
+}
+
+#[derive(serde::Serialize, serde::Deserialize)]
+struct CharacterHeader {
+    begin: u32,
+    frames: u32,
+    fragments: Vec<FragmentHeader>,
+}
+
+#[derive(serde::Serialize, serde::Deserialize)]
+struct FragmentHeader {
+    instance: u32,
+    role: u32,
+    begin: i32,
+    end: i32,
+    samples: u32,
+}
+
+impl Crowd {
+    /// The crowd as the bytes of a crowd file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut writer = Writer::default();
+        let people = || self.characters.iter();
+        let root: Vec<f32> = people().flat_map(|c| &c.root).flat_map(|p| p.to_array()).collect();
+        let rotations: Vec<i16> = people().flat_map(|c| &c.rotations).flat_map(|&q| pack_rotation(q)).collect();
+        let fragments = || people().flat_map(|c| &c.fragments);
+        let points: Vec<f32> = fragments().flat_map(|f| &f.points).flat_map(|p| [p.x, p.y]).collect();
+        let headings: Vec<f32> = fragments().flat_map(|f| &f.headings).copied().collect();
+        writer.array("root", &root);
+        writer.array("rotations", &rotations);
+        writer.array("path_points", &points);
+        writer.array("path_headings", &headings);
+        let set = serde_json::to_value(self.set.write_into(&mut writer, "set_")).expect("plain data");
+        let header = Header {
+            fps: FPS,
+            seed: self.seed,
+            skeleton: canonical().clone(),
+            domain: self.domain.clone(),
+            instances: self.instances.clone(),
+            characters: people().map(character_header).collect(),
+            set,
+        };
+        writer.finish(MAGIC, VERSION, &header)
+    }
+
+    /// A crowd from the bytes of a crowd file.
+    ///
+    /// # Errors
+    /// Names the place: magic, version, header field, character, array.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        let reader = Reader::open(bytes, MAGIC, VERSION)?;
+        let header: Header = reader.header()?;
+        let set = PatchSet::read_embedded(&reader, header.set, "set_")?;
+        let mut arrays = Arrays {
+            root: reader.array("root")?,
+            rotations: reader.array("rotations")?,
+            points: reader.array("path_points")?,
+            headings: reader.array("path_headings")?,
+            frame: 0,
+            sample: 0,
+        };
+        let read = |(i, c)| arrays.character(i, c);
+        let characters = header.characters.into_iter().enumerate().map(read).collect::<Result<Vec<_>>>()?;
+        let crowd = Self { seed: header.seed, domain: header.domain, set, instances: header.instances, characters };
+        crowd.check_references()?;
+        Ok(crowd)
+    }
+
+    /// Writes a crowd file, whole or not at all.
+    ///
+    /// # Errors
+    /// What the operating system says.
+    pub fn save(&self, path: &Path) -> Result<()> {
+        write_whole(path, &self.to_bytes())
+    }
+
+    /// Reads a crowd file.
+    ///
+    /// # Errors
+    /// The file is not there or is not a valid crowd.
+    pub fn load(path: &Path) -> Result<Self> {
+        let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
+        Self::from_bytes(&bytes).map_err(|e| e.in_file(path))
+    }
+
+    fn check_references(&self) -> Result<()> {
+        let bad = |place: String, problem: String| Err(Error::invalid("crowd", place, problem));
+        for (i, instance) in self.instances.iter().enumerate() {
+            if instance.kind as usize >= self.set.kinds.len() {
+                return bad(format!("instance {i}"), format!("kind {} does not exist", instance.kind));
+            }
+        }
+        for (i, character) in self.characters.iter().enumerate() {
+            for (k, f) in character.fragments.iter().enumerate() {
+                let place = || format!("character {i}, fragment {k}");
+                let kind = self.instances.get(f.instance as usize).map(|n| &self.set.kinds[n.kind as usize]);
+                let Some(source) = kind.and_then(|k| k.fragments.get(f.role as usize)) else {
+                    return bad(place(), format!("instance {} has no role {}", f.instance, f.role));
+                };
+                if source.motion.len() != f.points.len() {
+                    return bad(
+                        place(),
+                        format!("expected {} path samples, found {}", source.motion.len(), f.points.len()),
+                    );
+                }
+                if f.end <= f.begin {
+                    return bad(place(), format!("ends at frame {} before it begins at {}", f.end, f.begin));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn character_header(c: &Character) -> CharacterHeader {
+    let fragments = c.fragments.iter().map(|f| FragmentHeader {
+        instance: f.instance,
+        role: f.role,
+        begin: f.begin,
+        end: f.end,
+        samples: f.points.len() as u32,
+    });
+    CharacterHeader { begin: c.begin, frames: c.frames() as u32, fragments: fragments.collect() }
+}
+
+struct Arrays {
+    root: Vec<f32>,
+    rotations: Vec<i16>,
+    points: Vec<f32>,
+    headings: Vec<f32>,
+    frame: usize,
+    sample: usize,
+}
+
+impl Arrays {
+    fn character(&mut self, index: usize, header: CharacterHeader) -> Result<Character> {
+        let beyond = || Error::invalid("crowd", format!("character {index}"), "its frames reach beyond the arrays");
+        let frames = self.frame..self.frame.saturating_add(header.frames as usize);
+        let root = self.root.get(frames.start * 3..frames.end * 3).ok_or_else(beyond)?;
+        let rotations = self.rotations.get(frames.start * JOINT_COUNT * 4..frames.end * JOINT_COUNT * 4);
+        self.frame = frames.end;
+        let mut fragments = Vec::with_capacity(header.fragments.len());
+        for f in header.fragments {
+            let samples = self.sample..self.sample.saturating_add(f.samples as usize);
+            let points = self.points.get(samples.start * 2..samples.end * 2).ok_or_else(beyond)?;
+            let headings = self.headings.get(samples.clone()).ok_or_else(beyond)?;
+            self.sample = samples.end;
+            fragments.push(FragmentUse {
+                instance: f.instance,
+                role: f.role,
+                begin: f.begin,
+                end: f.end,
+                points: points.chunks_exact(2).map(Vec2::from_slice).collect(),
+                headings: headings.to_vec(),
+            });
+        }
+        Ok(Character {
+            begin: header.begin,
+            fragments,
+            root: root.chunks_exact(3).map(Vec3::from_slice).collect(),
+            rotations: rotations.ok_or_else(beyond)?.chunks_exact(4).map(unpack_rotation).collect::<Vec<Quat>>(),
+        })
+    }
+}
