@@ -11,6 +11,7 @@ pub mod export;
 pub mod geom;
 pub mod motion;
 pub mod patch;
+pub mod refine;
 pub mod samples;
 pub mod stage;
 pub mod tiling;

@@ -1,6 +1,7 @@
 //! Transforms of the ground plane, polygons, capsules.
 
 mod capsule;
+pub mod complex;
 mod ground;
 mod polygon;
 

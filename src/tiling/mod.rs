@@ -1,1 +1,20 @@
-//! To come.
+//! Tiling: packing motion patches into a domain so that no port dangles and nobody collides.
+
+mod bake;
+mod bridge;
+mod domain;
+mod engine;
+mod enrich;
+mod footprint;
+mod library;
+mod mend;
+mod occupancy;
+mod outcome;
+mod paper;
+mod scene;
+mod seed;
+mod tracks;
+
+pub use engine::tile;
+pub use outcome::{Method, Options, Outcome, Phase, Progress, Status};
+pub use scene::Scene;

@@ -1,0 +1,148 @@
+//! Carrying bodies along deformed paths, and blending them at stitches.
+//!
+//! At a stitch the two captures differ a little in pose, height and speed. Half of each difference, in value and in
+//! rate, is taken by either side and faded out by a cubic over a short window, so that the result is continuous and
+//! smooth (C1) and only the neighbourhood of the stitch changes.
+
+use glam::{Quat, Vec3};
+
+use super::{Body, Segment};
+use crate::geom::Ground;
+use crate::motion::JOINT_COUNT;
+
+/// Frames over which a difference is faded on either side of a stitch.
+const BLEND_FRAMES: i32 = 10;
+/// Numbers that describe a pose besides the joints: hips x, y, z.
+type Offset = [Vec3; JOINT_COUNT + 1];
+
+/// The carried and blended motion on the frames within 0..=last_frame.
+pub(super) fn carry(segments: &[Segment], last_frame: u32) -> Body {
+    let first = segments.first().map_or(0, |s| s.placed.begin.max(0));
+    let last = segments.last().map_or(-1, |s| s.placed.end.min(last_frame as i32));
+    let mut body = Body { begin: first as u32, ..Body::default() };
+    let stitches: Vec<Stitch> = segments.windows(2).map(|pair| Stitch::between(&pair[0], &pair[1])).collect();
+    let mut current = 0;
+    for frame in first..=last {
+        while current + 1 < segments.len() && frame >= segments[current].placed.end {
+            current += 1;
+        }
+        let mut pose = pose_at(&segments[current], segments[current].source_frame(frame));
+        if current > 0 {
+            pose.add(&stitches[current - 1], stitches[current - 1].after(frame));
+        }
+        if let Some(stitch) = stitches.get(current) {
+            pose.add(stitch, stitch.before(frame));
+        }
+        body.root.push(pose.root);
+        body.rotations.push(pose.heading * pose.rotations[0]);
+        body.rotations.extend_from_slice(&pose.rotations[1..]);
+    }
+    body
+}
+
+/// A carried pose; the hips' rotation is still relative to the path frame.
+struct Pose {
+    root: Vec3,
+    heading: Quat,
+    rotations: [Quat; JOINT_COUNT],
+}
+
+impl Pose {
+    /// Adds the stitch's differences, the value scaled by `weights.0` and the rate by `weights.1`.
+    fn add(&mut self, stitch: &Stitch, (value, rate): (f32, f32)) {
+        if value == 0.0 && rate == 0.0 {
+            return;
+        }
+        let offset = |i: usize| stitch.difference[i] * value + stitch.rate[i] * rate;
+        self.root += offset(JOINT_COUNT);
+        for (i, q) in self.rotations.iter_mut().enumerate() {
+            *q = (Quat::from_scaled_axis(offset(i)) * *q).normalize();
+        }
+    }
+}
+
+fn pose_at(segment: &Segment, source_frame: f32) -> Pose {
+    let motion = &segment.source.motion;
+    let i = (source_frame as usize).min(motion.len() - 2);
+    let t = source_frame - i as f32;
+    let at = ground_at(segment, i, t);
+    let height = motion.heights[i] * (1.0 - t) + motion.heights[i + 1] * t;
+    let (a, b) = (motion.pose(i), motion.pose(i + 1));
+    Pose {
+        root: Vec3::new(at.position.x, height, at.position.y),
+        heading: at.rotation(),
+        rotations: std::array::from_fn(|j| if t == 0.0 { a[j] } else { a[j].lerp(b[j], t) }),
+    }
+}
+
+fn ground_at(segment: &Segment, i: usize, t: f32) -> Ground {
+    let (points, headings) = (&segment.placed.points, &segment.placed.headings);
+    Ground::new(points[i].lerp(points[i + 1], t), headings[i] * (1.0 - t) + headings[i + 1] * t)
+}
+
+/// The differences between the two sides of a stitch: entry minus exit, in value and per frame.
+struct Stitch {
+    frame: i32,
+    window_before: i32,
+    window_after: i32,
+    difference: Offset,
+    rate: Offset,
+}
+
+impl Stitch {
+    fn between(before: &Segment, after: &Segment) -> Self {
+        let last = (before.source.motion.len() - 1) as f32;
+        let (exit, entry) = (pose_at(before, last), pose_at(after, 0.0));
+        let exit_rate = rate(&pose_at(before, last - 1.0), &exit, before.rate());
+        let entry_rate = rate(&entry, &pose_at(after, 1.0), after.rate());
+        let half = |s: &Segment| BLEND_FRAMES.min((s.placed.end - s.placed.begin) / 2).max(1);
+        Self {
+            frame: after.placed.begin,
+            window_before: half(before),
+            window_after: half(after),
+            difference: difference(&exit, &entry),
+            rate: std::array::from_fn(|i| entry_rate[i] - exit_rate[i]),
+        }
+    }
+
+    /// Weights of difference and rate at a frame before the stitch.
+    fn before(&self, frame: i32) -> (f32, f32) {
+        let w = self.window_before as f32;
+        let s = 1.0 + (frame - self.frame) as f32 / w;
+        if s <= 0.0 { (0.0, 0.0) } else { (0.5 * s * s * (3.0 - 2.0 * s), 0.5 * w * s * s * (s - 1.0)) }
+    }
+
+    /// Weights of difference and rate at a frame after the stitch.
+    fn after(&self, frame: i32) -> (f32, f32) {
+        let w = self.window_after as f32;
+        let s = (frame - self.frame) as f32 / w;
+        if s >= 1.0 {
+            return (0.0, 0.0);
+        }
+        let left = 1.0 - s;
+        (-0.5 * left * left * (1.0 + 2.0 * s), -0.5 * w * s * left * left)
+    }
+}
+
+fn difference(from: &Pose, to: &Pose) -> Offset {
+    std::array::from_fn(|i| match i {
+        JOINT_COUNT => to.root - from.root,
+        _ => (to.rotations[i] * from.rotations[i].inverse()).to_shortest_scaled_axis(),
+    })
+}
+
+fn rate(from: &Pose, to: &Pose, per_frame: f32) -> Offset {
+    difference(from, to).map(|d| d * per_frame)
+}
+
+trait ShortestAxis {
+    fn to_shortest_scaled_axis(self) -> Vec3;
+}
+
+impl ShortestAxis for Quat {
+    /// The rotation vector of at most half a turn.
+    fn to_shortest_scaled_axis(self) -> Vec3 {
+        let q = if self.w < 0.0 { -self } else { self };
+        q.to_scaled_axis()
+    }
+}

@@ -1,0 +1,187 @@
+//! Planted feet stay where they are: each plant locks the ball of the foot to one place, legs follow by inverse
+//! kinematics, hips come down where a leg would have to be longer than it is.
+
+use glam::{Quat, Vec3};
+
+use super::{Body, Segment};
+use crate::motion::ik::two_bone;
+use crate::motion::joint::{LEFT_FOOT, RIGHT_FOOT};
+use crate::motion::{Foot, JOINT_COUNT, canonical};
+
+/// Largest part of a leg's length that is used, so that knees never lock.
+const LEG_STRETCH: f32 = 0.995;
+/// Most that hips are lowered, metres.
+const MAX_LOWERING: f32 = 0.10;
+/// Frames over which hips come down and rise again.
+const LOWERING_FRAMES: usize = 5;
+/// A swing this long (frames) forgets the plant before it.
+const LONG_SWING: i32 = 24;
+/// Frames over which a long swing takes on or loses the correction of a plant.
+const RELEASE_FRAMES: i32 = 10;
+/// Gap in a foot's plants over a stitch that still counts as one plant, frames.
+const MERGE_FRAMES: i32 = 2;
+
+/// A plant on the crowd's clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Lock {
+    begin: i32,
+    end: i32,
+}
+
+/// Locks planted feet.
+pub(super) fn lock(segments: &[Segment], body: &mut Body) {
+    let frames = body.root.len();
+    if frames == 0 {
+        return;
+    }
+    let legs = [(Foot::Left, LEFT_FOOT), (Foot::Right, RIGHT_FOOT)];
+    let offsets = legs.map(|(foot, ankle)| {
+        let balls = trajectory(body, ankle + 1);
+        corrections(&balls, &locks(segments, foot, body.begin as i32, frames as i32))
+    });
+    let lowering = lowering(body, legs.map(|(_, ankle)| ankle), &offsets);
+    let mut globals = Vec::new();
+    for f in 0..frames {
+        let down = lowering[f];
+        body.root[f].y -= down;
+        for (k, (_, ankle)) in legs.into_iter().enumerate() {
+            let shift = offsets[k][f] + Vec3::Y * down;
+            if shift.length_squared() > 1e-10 {
+                let pose = &mut body.rotations[f * JOINT_COUNT..(f + 1) * JOINT_COUNT];
+                canonical().globals(body.root[f], pose, &mut globals);
+                move_ankle(pose, &globals, ankle, shift);
+            }
+        }
+    }
+}
+
+/// The plants of one foot on the crowd's frames 0.. of the body, those that go on over a stitch made one.
+fn locks(segments: &[Segment], foot: Foot, begin: i32, frames: i32) -> Vec<Lock> {
+    let mut locks: Vec<Lock> = Vec::new();
+    for s in segments {
+        for p in s.source.motion.plants.iter().filter(|p| p.foot == foot) {
+            let at = |source: u32| s.placed.begin as f32 + source as f32 / s.rate() - begin as f32;
+            let lock = Lock { begin: at(p.begin).ceil() as i32, end: at(p.end).floor() as i32 };
+            let lock = Lock { begin: lock.begin.max(0), end: lock.end.min(frames - 1) };
+            if lock.end < lock.begin {
+                continue;
+            }
+            match locks.last_mut() {
+                Some(last) if lock.begin <= last.end + MERGE_FRAMES => last.end = last.end.max(lock.end),
+                _ => locks.push(lock),
+            }
+        }
+    }
+    locks
+}
+
+fn trajectory(body: &Body, joint: usize) -> Vec<Vec3> {
+    let mut globals = Vec::new();
+    let position = |f: usize| {
+        canonical().globals(body.root[f], &body.rotations[f * JOINT_COUNT..(f + 1) * JOINT_COUNT], &mut globals);
+        globals[joint].0
+    };
+    (0..body.root.len()).map(position).collect()
+}
+
+/// What to add to the ball's position on each frame: exactly what keeps it in place over a plant, and a smooth way
+/// from one plant's last correction to the next one's first in between.
+fn corrections(balls: &[Vec3], locks: &[Lock]) -> Vec<Vec3> {
+    let mut offsets = vec![Vec3::ZERO; balls.len()];
+    for lock in locks {
+        let range = lock.begin as usize..=lock.end as usize;
+        let place = balls[range.clone()].iter().sum::<Vec3>() / range.clone().count() as f32;
+        for f in range {
+            offsets[f] = place - balls[f];
+        }
+    }
+    for pair in locks.windows(2) {
+        fill(&mut offsets, Some(pair[0].end), Some(pair[1].begin));
+    }
+    if let (Some(first), Some(last)) = (locks.first(), locks.last()) {
+        fill(&mut offsets, None, Some(first.begin));
+        fill(&mut offsets, Some(last.end), None);
+    }
+    offsets
+}
+
+fn fill(offsets: &mut [Vec3], from: Option<i32>, to: Option<i32>) {
+    let begin = from.unwrap_or(-LONG_SWING);
+    let end = to.unwrap_or(offsets.len() as i32 + LONG_SWING);
+    let before = from.map_or(Vec3::ZERO, |f| offsets[f as usize]);
+    let after = to.map_or(Vec3::ZERO, |f| offsets[f as usize]);
+    let fade = if end - begin < LONG_SWING { end - begin } else { RELEASE_FRAMES };
+    for f in (begin + 1).max(0)..end.min(offsets.len() as i32) {
+        let left = 1.0 - smoothstep((f - begin) as f32 / fade as f32);
+        let gained = 1.0 - smoothstep((end - f) as f32 / fade as f32);
+        offsets[f as usize] = before * left + after * gained;
+    }
+}
+
+fn smoothstep(x: f32) -> f32 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}
+
+/// How far the hips must come down on each frame for both feet to be in reach, smoothed over time.
+fn lowering(body: &Body, ankles: [usize; 2], offsets: &[Vec<Vec3>; 2]) -> Vec<f32> {
+    let n = body.root.len();
+    let mut globals = Vec::new();
+    let need: Vec<f32> = (0..n)
+        .map(|f| {
+            canonical().globals(body.root[f], &body.rotations[f * JOINT_COUNT..(f + 1) * JOINT_COUNT], &mut globals);
+            let of_leg = |k: usize| {
+                let (hip, ankle) = (globals[ankles[k] - 2].0, globals[ankles[k]].0 + offsets[k][f]);
+                let reach = leg_length(ankles[k]) * LEG_STRETCH;
+                let across = (ankle - hip).with_y(0.0).length_squared();
+                let height = (reach * reach - across).max(0.0).sqrt();
+                if offsets[k][f] == Vec3::ZERO { 0.0 } else { hip.y - ankle.y - height }
+            };
+            of_leg(0).max(of_leg(1)).clamp(0.0, MAX_LOWERING)
+        })
+        .collect();
+    if need.iter().all(|&v| v == 0.0) {
+        return need;
+    }
+    // A running maximum and a running mean of the same width: smooth, and nowhere less than needed.
+    let window = |f: usize| f.saturating_sub(LOWERING_FRAMES)..(f + LOWERING_FRAMES + 1).min(n);
+    let widest: Vec<f32> = (0..n).map(|f| need[window(f)].iter().copied().fold(0.0, f32::max)).collect();
+    (0..n).map(|f| widest[window(f)].iter().sum::<f32>() / window(f).len() as f32).collect()
+}
+
+fn leg_length(ankle: usize) -> f32 {
+    let joints = &canonical().joints;
+    joints[ankle].offset.length() + joints[ankle - 1].offset.length()
+}
+
+/// Moves an ankle by `shift`, the foot keeping its orientation.
+fn move_ankle(pose: &mut [Quat], globals: &[(Vec3, Quat)], ankle: usize, shift: Vec3) {
+    let (up, knee) = (ankle - 2, ankle - 1);
+    let pole = globals[0].1 * Vec3::Z;
+    let target = globals[ankle].0 + shift;
+    let (swing, bend, _) = two_bone(globals[up].0, globals[knee].0, globals[ankle].0, target, pole, 0.9999);
+    let (up_rotation, knee_rotation) = (swing * globals[up].1, swing * bend * globals[knee].1);
+    pose[up] = (globals[0].1.inverse() * up_rotation).normalize();
+    pose[knee] = (up_rotation.inverse() * knee_rotation).normalize();
+    pose[ankle] = (knee_rotation.inverse() * globals[ankle].1).normalize();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corrections_hold_the_ball_still_and_are_smooth_between() {
+        let balls: Vec<Vec3> = (0..60).map(|f| Vec3::new(0.0, 0.02, f as f32 * 0.01)).collect();
+        let locks = [Lock { begin: 5, end: 20 }, Lock { begin: 35, end: 50 }];
+        let offsets = corrections(&balls, &locks);
+        for lock in locks {
+            let place = balls[lock.begin as usize] + offsets[lock.begin as usize];
+            for f in lock.begin..=lock.end {
+                assert!((balls[f as usize] + offsets[f as usize] - place).length() < 1e-6);
+            }
+        }
+        let jump = offsets.windows(2).map(|w| (w[1] - w[0]).length()).fold(0.0, f32::max);
+        assert!(jump < 0.03, "{jump}");
+    }
+}

@@ -1,0 +1,53 @@
+//! From stitched fragments to a person's final full-body motion: bodies are carried along the deformed paths, blended
+//! where fragments meet, and their feet locked to the ground. A pass over whole tracks, not over patches.
+
+mod carry;
+mod feet;
+
+use glam::{Quat, Vec3};
+
+use crate::patch::Fragment;
+use crate::stage::FragmentUse;
+
+/// A fragment in a person's life: what was captured, and how it is placed and timed.
+#[derive(Clone, Copy)]
+pub struct Segment<'a> {
+    /// The capture.
+    pub source: &'a Fragment,
+    /// The deformed path and the frames from entry to exit.
+    pub placed: &'a FragmentUse,
+}
+
+impl Segment<'_> {
+    /// Source frame (with fraction) shown at a frame of the crowd.
+    pub fn source_frame(&self, frame: i32) -> f32 {
+        let last = self.source.motion.len() - 1;
+        let at = (frame - self.placed.begin) as f32 * last as f32 / (self.placed.end - self.placed.begin) as f32;
+        at.clamp(0.0, last as f32)
+    }
+
+    /// Source frames per frame of the crowd.
+    pub fn rate(&self) -> f32 {
+        (self.source.motion.len() - 1) as f32 / (self.placed.end - self.placed.begin) as f32
+    }
+}
+
+/// A person's final motion.
+#[derive(Clone, Debug, Default)]
+pub struct Body {
+    /// First frame.
+    pub begin: u32,
+    /// Hips position per frame.
+    pub root: Vec<Vec3>,
+    /// Rotations, frame-major: hips' global, others local.
+    pub rotations: Vec<Quat>,
+}
+
+/// The final motion of a person over the frames 0..=last_frame of the crowd at which the person is there.
+///
+/// `segments` are in order of time and each begins where the one before ends. O(frames x joints).
+pub fn refine(segments: &[Segment], last_frame: u32) -> Body {
+    let mut body = carry::carry(segments, last_frame);
+    feet::lock(segments, &mut body);
+    body
+}

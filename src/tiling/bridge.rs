@@ -1,0 +1,298 @@
+//! Bridging: a chain of single-person patches from one port to another, or on to the edge of time.
+//!
+//! Best-first search over rigidly placed patches, which stitch exactly; only the last one or two are deformed so that
+//! the chain ends exactly where it must. Wherever the rest can be closed by such a strand the search ends.
+
+use std::collections::{BinaryHeap, HashSet};
+
+use rand::{Rng, RngExt};
+use rand_chacha::ChaCha8Rng;
+
+use super::domain::Domain;
+use super::library::{Closing, Library, Move};
+use super::occupancy::{Occupancy, Piece};
+use crate::geom::{Ground, wrap_angle};
+use crate::motion::{FPS, MotionPath};
+
+/// A port to be met: a place, a heading, a tick and a pose group.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Port {
+    /// Place and heading.
+    pub at: Ground,
+    /// When.
+    pub tick: i32,
+    /// Pose group.
+    pub group: u32,
+}
+
+/// What a chain must lead to.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Goal {
+    /// Exactly this port (forward in time only).
+    Port(Port),
+    /// Any state at or after this tick, searching forward.
+    Until(i32),
+    /// Any state at or before this tick, searching backward.
+    Since(i32),
+}
+
+/// Taste of the search.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Taste {
+    /// Cost factor of standing and turning in place; below 1 people rather stand.
+    pub calm: f32,
+    /// Most states expanded.
+    pub expansions: usize,
+}
+
+/// Instance index of pieces that belong to no instance yet.
+pub(super) const NO_INSTANCE: u32 = u32::MAX;
+
+// Search constants: see the docs of the project, "The engine".
+const CLOSE_WITHIN_TICKS: i32 = 110;
+const TIME_WEIGHT: f32 = 0.95;
+const LATE_WEIGHT: f32 = 2.5;
+const TURN_WEIGHT: f32 = 0.5;
+const EASY_SPEED: f32 = 1.2;
+const TOP_SPEED: f32 = 1.7;
+const SLACK: f32 = 0.5;
+const SINGLE_REACH: f32 = 0.9;
+const PAIR_REACH: f32 = 1.2;
+const MAX_TURN: f32 = std::f32::consts::FRAC_PI_3;
+/// A state this close to a wall leads nowhere.
+const WALL_ROOM: f32 = 0.3;
+/// Below this mean speed a patch counts as standing, m/s.
+const STANDING_SPEED: f32 = 0.25;
+
+struct Node {
+    at: Port,
+    cost: f32,
+    parent: u32,
+    role: u32,
+    /// Placed and found free when first expanded.
+    piece: Option<Piece>,
+}
+
+#[derive(PartialEq)]
+struct Entry {
+    score: f32,
+    node: u32,
+}
+
+impl Eq for Entry {}
+impl PartialOrd for Entry {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Entry {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        // The heap is a max-heap: small scores first, then old nodes.
+        other.score.total_cmp(&self.score).then(other.node.cmp(&self.node))
+    }
+}
+
+/// What a search looks at.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    /// The patches.
+    pub library: &'a Library<'a>,
+    /// Walls and time.
+    pub domain: &'a Domain,
+    /// Who is where.
+    pub occupancy: &'a Occupancy,
+}
+
+/// The search with its reusable buffers.
+#[derive(Default)]
+pub(super) struct Bridge {
+    nodes: Vec<Node>,
+    heap: BinaryHeap<Entry>,
+    seen: HashSet<(i32, i32, i32, i32, u32)>,
+    path: MotionPath,
+}
+
+impl Bridge {
+    /// A chain of free pieces, in order of time, from `from` to `goal`; `None` if none was found in `taste.expansions`.
+    ///
+    /// Time O(expansions x moves x frames).
+    pub fn search(
+        &mut self,
+        view: View,
+        from: Port,
+        goal: Goal,
+        taste: Taste,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Vec<Piece>> {
+        self.nodes.clear();
+        self.heap.clear();
+        self.seen.clear();
+        self.push(Node { at: from, cost: 0.0, parent: 0, role: u32::MAX, piece: None }, 0.0);
+        let mut expansions = 0;
+        while let Some(Entry { node, .. }) = self.heap.pop() {
+            if !self.place(view, node, goal) {
+                continue;
+            }
+            let at = self.nodes[node as usize].at;
+            let done = match goal {
+                Goal::Port(_) => false,
+                Goal::Until(tick) => at.tick >= tick,
+                Goal::Since(tick) => at.tick <= tick,
+            };
+            if done {
+                return Some(self.chain(node, matches!(goal, Goal::Since(_)), vec![]));
+            }
+            if let Goal::Port(to) = goal
+                && let Some(last) = self.close(view, at, to, rng)
+            {
+                return Some(self.chain(node, false, last));
+            }
+            expansions += 1;
+            if expansions > taste.expansions {
+                return None;
+            }
+            self.expand(view, node, goal, taste, rng);
+        }
+        None
+    }
+
+    fn push(&mut self, node: Node, score: f32) {
+        self.heap.push(Entry { score, node: self.nodes.len() as u32 });
+        self.nodes.push(node);
+    }
+
+    /// Places the node's patch; false if it is not free.
+    fn place(&mut self, view: View, node: u32, goal: Goal) -> bool {
+        let n = &self.nodes[node as usize];
+        if n.role == u32::MAX {
+            return true;
+        }
+        let (entry, begin) = match goal {
+            Goal::Since(_) => (n.at.at, n.at.tick),
+            _ => (self.nodes[n.parent as usize].at.at, self.nodes[n.parent as usize].at.tick),
+        };
+        let piece = Piece::rigid(view.library, view.domain, n.role, NO_INSTANCE, entry, begin);
+        if !view.occupancy.is_free(view.library, view.domain, &piece) {
+            return false;
+        }
+        self.nodes[node as usize].piece = Some(piece);
+        true
+    }
+
+    fn expand(&mut self, view: View, node: u32, goal: Goal, taste: Taste, rng: &mut ChaCha8Rng) {
+        let from = self.nodes[node as usize].at;
+        let cost = self.nodes[node as usize].cost;
+        let (moves, direction) = match goal {
+            Goal::Since(_) => (&view.library.backward, -1),
+            _ => (&view.library.forward, 1),
+        };
+        for step in &moves[from.group as usize] {
+            let at = Port { at: from.at.then(step.to), tick: from.tick + direction * step.ticks, group: step.group };
+            let inside = at.tick < 0 || at.tick > view.domain.horizon || view.domain.holds(at.at.position, WALL_ROOM);
+            if !inside || !self.seen.insert(key(&at)) {
+                continue;
+            }
+            let cost = cost + step_cost(step, taste) * rng.random_range(0.85..1.2);
+            if let Some(left) = cost_left(&at, goal) {
+                self.push(Node { at, cost, parent: node, role: step.role, piece: None }, cost + left);
+            }
+        }
+    }
+
+    /// The last one or two patches, deformed so that they lead from `from` exactly to `to`.
+    fn close(&mut self, view: View, from: Port, to: Port, rng: &mut ChaCha8Rng) -> Option<Vec<Piece>> {
+        let left = to.tick - from.tick;
+        if left <= 0 || left > CLOSE_WITHIN_TICKS {
+            return None;
+        }
+        let groups = view.library.set.groups.len();
+        let closings = &view.library.closings[from.group as usize * groups + to.group as usize];
+        if closings.is_empty() {
+            return None;
+        }
+        // Begin anywhere, so that no kind is always the first to be tried.
+        let start = rng.next_u32() as usize % closings.len();
+        let (tail, head) = (&closings[start..], &closings[..start]);
+        tail.iter()
+            .chain(head)
+            .filter(|c| c.ticks.0 <= left && left <= c.ticks.1)
+            .find_map(|c| self.try_close(view, c, from, to))
+    }
+
+    fn try_close(&mut self, view: View, closing: &Closing, from: Port, to: Port) -> Option<Vec<Piece>> {
+        let end = from.at.then(closing.strand.exit());
+        let reach = if closing.roles[1].is_some() { PAIR_REACH } else { SINGLE_REACH };
+        let near = end.position.distance_squared(to.at.position) < reach * reach
+            && wrap_angle(end.heading - to.at.heading).abs() < MAX_TURN;
+        if !near || !closing.strand.deform(from.at, to.at, &view.library.limits, &mut self.path) {
+            return None;
+        }
+        let pieces = split(view, closing, &self.path, from.tick, to.tick)?;
+        pieces.iter().all(|p| view.occupancy.is_free(view.library, view.domain, p)).then_some(pieces)
+    }
+
+    fn chain(&mut self, node: u32, backward: bool, last: Vec<Piece>) -> Vec<Piece> {
+        let mut pieces = Vec::new();
+        let mut at = node;
+        while let Some(piece) = self.nodes[at as usize].piece.take() {
+            pieces.push(piece);
+            at = self.nodes[at as usize].parent;
+        }
+        if !backward {
+            pieces.reverse();
+        }
+        pieces.extend(last);
+        pieces
+    }
+}
+
+/// Cuts a deformed strand into the pieces of its roles, sharing out the ticks in proportion to the sources'.
+fn split(view: View, closing: &Closing, path: &MotionPath, begin: i32, end: i32) -> Option<Vec<Piece>> {
+    let role = |r: u32| &view.library.roles[r as usize];
+    let first = closing.roles[0].expect("a closing has a first role");
+    let piece = |r, path, begin, end| Piece::along(view.library, view.domain, r, NO_INSTANCE, path, begin, end);
+    let Some(second) = closing.roles[1] else {
+        return Some(vec![piece(first, path.clone(), begin, end)]);
+    };
+    let cut = role(first).ticks as usize;
+    let share = cut as f32 / (path.len() - 1) as f32;
+    let range = |r| view.library.limits.tick_range(role(r).path.len());
+    let ((low_a, high_a), (low_b, high_b)) = (range(first), range(second));
+    let ticks = ((end - begin) as f32 * share).round() as i32;
+    let ticks = ticks.clamp(low_a.max(end - begin - high_b), high_a.min(end - begin - low_b));
+    let part = |range: std::ops::RangeInclusive<usize>| MotionPath {
+        points: path.points[range.clone()].to_vec(),
+        headings: path.headings[range].to_vec(),
+    };
+    Some(vec![
+        piece(first, part(0..=cut), begin, begin + ticks),
+        piece(second, part(cut..=path.len() - 1), begin + ticks, end),
+    ])
+}
+
+fn step_cost(step: &Move, taste: Taste) -> f32 {
+    let factor = if step.speed < STANDING_SPEED { taste.calm } else { 1.0 };
+    step.ticks as f32 / FPS * factor
+}
+
+/// Estimated cost from `at` to the goal, in seconds; `None` if the goal is out of reach.
+fn cost_left(at: &Port, goal: Goal) -> Option<f32> {
+    match goal {
+        Goal::Until(tick) => Some(TIME_WEIGHT * (tick - at.tick).max(0) as f32 / FPS),
+        Goal::Since(tick) => Some(TIME_WEIGHT * (at.tick - tick).max(0) as f32 / FPS),
+        Goal::Port(to) => {
+            let left = (to.tick - at.tick) as f32 / FPS;
+            let distance = at.at.position.distance(to.at.position);
+            let reachable = left > 0.0 && distance <= TOP_SPEED * left + SLACK;
+            let turn = wrap_angle(to.at.heading - at.at.heading).abs() - MAX_TURN;
+            let late = (distance - EASY_SPEED * left).max(0.0) + TURN_WEIGHT * (turn - left).max(0.0);
+            reachable.then_some(TIME_WEIGHT * left + LATE_WEIGHT * late)
+        }
+    }
+}
+
+fn key(p: &Port) -> (i32, i32, i32, i32, u32) {
+    let heading = (wrap_angle(p.at.heading).to_degrees() / 20.0).round() as i32;
+    let (x, z) = (p.at.position.x / 0.25, p.at.position.y / 0.25);
+    (x.round() as i32, z.round() as i32, heading, p.tick.div_euclid(5), p.group)
+}

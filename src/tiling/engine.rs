@@ -1,0 +1,228 @@
+//! The engine: a tiling that is perfect after every step.
+//!
+//! Seed adds one person at a time, led over the whole time by single-person patches. Enrich puts patches of several
+//! people where people pass near each other and bridges the ripped tracks again. Mend tests the final bodies. All
+//! three use one mechanism: rip up a window of a track and bridge it (recipe and reasons: ARCHITECTURE.md).
+
+use std::time::{Duration, Instant};
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::bake::bake;
+use super::bridge::Taste;
+use super::domain::Domain;
+use super::enrich::enrich;
+use super::library::Library;
+use super::mend::{bodies, faults, mend};
+use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
+use super::seed::seed_person;
+use super::tracks::Tracks;
+use super::{Scene, paper};
+use crate::patch::PatchSet;
+use crate::{Error, Result};
+
+/// Failed tries in a row after which no further person is wished for.
+const SEED_PATIENCE: usize = 400;
+/// Failed tries in a row after which no further patch of several people is wished for.
+const ENRICH_PATIENCE: usize = 20_000;
+/// Largest share of the people's time in patches of several people that early rounds aim at.
+const BUSIEST: f32 = 0.7;
+/// Rounds of mending.
+const MEND_ROUNDS: usize = 30;
+/// Time between two reports of progress.
+const REPORT_EVERY: Duration = Duration::from_millis(50);
+
+/// Tiles a scene with a patch set.
+///
+/// `progress` is told about twenty times a second how far the run is, and stops it by returning false; the best tiling
+/// so far is then the outcome. The same seed gives the same crowd for any number of threads unless time runs out.
+///
+/// # Errors
+/// The scene has no room, or the set cannot make a perfect tiling: it is empty, or a pose group can be entered but
+/// never left or the other way round.
+pub fn tile(
+    scene: &Scene,
+    set: &PatchSet,
+    options: &Options,
+    progress: &mut dyn FnMut(&Progress) -> bool,
+) -> Result<Outcome> {
+    check_set(set)?;
+    let domain = Domain::new(scene)?;
+    match options.method {
+        Method::Engine => Ok(engine(scene, set, &domain, options, progress)),
+        Method::Paper => Ok(paper::tile(scene, set, &domain, options, progress)),
+    }
+}
+
+fn check_set(set: &PatchSet) -> Result<()> {
+    if let Some(problem) = set.validate().into_iter().next() {
+        return Err(problem);
+    }
+    if set.kinds.is_empty() {
+        return Err(Error::invalid("patch set", "kinds", "expected at least one kind, found none"));
+    }
+    let single = |k: &&crate::patch::PatchKind| k.people() == 1;
+    let singles = || set.kinds.iter().filter(single).flat_map(|k| &k.fragments);
+    for kind in &set.kinds {
+        for (role, f) in kind.fragments.iter().enumerate() {
+            let name = |group: u32| &set.groups[group as usize].name;
+            let place = || format!("kind {}, role {role}", kind.name);
+            if !singles().any(|s| s.entry_group == f.exit_group) {
+                let problem =
+                    format!("no single-person kind can follow its exit in pose group {:?}", name(f.exit_group));
+                return Err(Error::invalid("patch set", place(), problem));
+            }
+            if !singles().any(|s| s.exit_group == f.entry_group) {
+                let problem =
+                    format!("no single-person kind can lead to its entry in pose group {:?}", name(f.entry_group));
+                return Err(Error::invalid("patch set", place(), problem));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Reports progress now and then and knows when to stop.
+pub(super) struct Clock<'a> {
+    start: Instant,
+    last_report: Instant,
+    limit: Duration,
+    stopped: bool,
+    progress: &'a mut dyn FnMut(&Progress) -> bool,
+}
+
+impl<'a> Clock<'a> {
+    pub(super) fn new(limit_secs: f64, progress: &'a mut dyn FnMut(&Progress) -> bool) -> Self {
+        let now = Instant::now();
+        Self {
+            start: now,
+            last_report: now,
+            limit: Duration::from_secs_f64(limit_secs.max(0.0)),
+            stopped: false,
+            progress,
+        }
+    }
+
+    /// False once time is up or the caller has had enough.
+    pub(super) fn goes_on(&mut self, state: impl FnOnce() -> Progress) -> bool {
+        let now = Instant::now();
+        if !self.stopped && now - self.last_report >= REPORT_EVERY {
+            self.last_report = now;
+            let secs = self.secs();
+            self.stopped = !(self.progress)(&Progress { secs, ..state() });
+        }
+        !self.stopped && now - self.start < self.limit
+    }
+
+    pub(super) fn secs(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+}
+
+fn engine(
+    scene: &Scene,
+    set: &PatchSet,
+    domain: &Domain,
+    options: &Options,
+    progress: &mut dyn FnMut(&Progress) -> bool,
+) -> Outcome {
+    let mut clock = Clock::new(options.time_secs, progress);
+    let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
+    let library = Library::new(set, scene.limits);
+    let mut tracks = Tracks::new(&library, domain);
+    let taste = Taste { calm: calm(scene), expansions: 150 };
+
+    // Patches of several people need room: they go in while the place is half empty, enough of them for all to come.
+    for part in [3, 2, 1] {
+        let people = scene.characters.div_ceil(part);
+        seed(&mut tracks, people, taste, &mut clock, &mut rng);
+        let share = (scene.interaction * (scene.characters as f32 / people as f32)).min(BUSIEST);
+        enrich_to(&mut tracks, share, taste, &mut clock, &mut rng);
+    }
+    let (bodies, left) = mend_all(&mut tracks, taste, &mut clock, &mut rng);
+    let status = status(&tracks, scene, left);
+    let crowd = bake(&tracks, scene, options.seed, bodies);
+    Outcome { crowd, status, danglings: 0, interpenetrations: left, solve_secs: clock.secs() }
+}
+
+/// The denser the crowd, the more people rather stand than walk.
+fn calm(scene: &Scene) -> f32 {
+    let density = scene.characters as f32 / scene.region.area();
+    (1.25 - density).clamp(0.3, 1.0)
+}
+
+fn state(tracks: &Tracks, phase: Phase) -> Progress {
+    let ports: usize = tracks.tracks.iter().map(|t| 2 * t.len()).sum();
+    Progress {
+        phase,
+        patches: tracks.instances(),
+        characters: tracks.tracks.len(),
+        danglings: 0,
+        multi_person_share: tracks.multi_person_share(),
+        energy: paper::energy(ports, 0),
+        secs: 0.0,
+    }
+}
+
+fn seed(tracks: &mut Tracks, wish: usize, taste: Taste, clock: &mut Clock, rng: &mut ChaCha8Rng) {
+    let mut failures = 0;
+    while tracks.tracks.len() < wish && failures < SEED_PATIENCE && clock.goes_on(|| state(tracks, Phase::Seed)) {
+        failures = if seed_person(tracks, taste, rng) { 0 } else { failures + 1 };
+    }
+}
+
+fn enrich_to(tracks: &mut Tracks, wish: f32, taste: Taste, clock: &mut Clock, rng: &mut ChaCha8Rng) {
+    let kinds = tracks.library.multi.clone();
+    if kinds.is_empty() || tracks.tracks.is_empty() {
+        return;
+    }
+    let mut failures = 0;
+    let mut share = tracks.multi_person_share();
+    while share < wish && failures < ENRICH_PATIENCE && clock.goes_on(|| state(tracks, Phase::Enrich)) {
+        let kind = kinds[rng.random_range(0..kinds.len())];
+        if enrich(tracks, kind, taste, rng) {
+            failures = 0;
+            share = tracks.multi_person_share();
+        } else {
+            failures += 1;
+        }
+    }
+}
+
+/// Tests final bodies and bridges anew until none interpenetrate; the bodies and the number of faults left.
+fn mend_all(
+    tracks: &mut Tracks,
+    taste: Taste,
+    clock: &mut Clock,
+    rng: &mut ChaCha8Rng,
+) -> (Vec<crate::refine::Body>, usize) {
+    let mut round = 0;
+    loop {
+        let bodies = bodies(tracks);
+        let faults = faults(tracks, &bodies);
+        round += 1;
+        if faults.is_empty() || round > MEND_ROUNDS || !clock.goes_on(|| state(tracks, Phase::Mend)) {
+            return (bodies, faults.len());
+        }
+        for fault in faults {
+            mend(tracks, fault, taste, rng);
+        }
+    }
+}
+
+fn status(tracks: &Tracks, scene: &Scene, faults: usize) -> Status {
+    let share = tracks.multi_person_share();
+    if faults > 0 {
+        Status::Imperfect(format!("{faults} interpenetrations are left"))
+    } else if tracks.tracks.len() < scene.characters {
+        Status::Short(format!("{} of {} characters found room", tracks.tracks.len(), scene.characters))
+    } else if share < scene.interaction && !tracks.library.multi.is_empty() {
+        Status::Short(format!(
+            "{share:.3} of {:.3} of the time is spent in patches of several people",
+            scene.interaction
+        ))
+    } else {
+        Status::Perfect
+    }
+}

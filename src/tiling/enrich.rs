@@ -1,0 +1,314 @@
+//! Enriching: a patch of two or more people is put where people pass near each other. The windows of their tracks
+//! around it are ripped up and bridged again, and so are those of the few who stand in the way; if one bridge fails
+//! everything is as before.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use super::bridge::{Goal, Port, Taste};
+use super::occupancy::{Piece, PieceId};
+use super::tracks::{TrackId, Tracks, Undo, Window};
+use crate::geom::{Ground, complex, wrap_angle};
+use crate::motion::FPS;
+
+/// How far from an entry its future player may be, metres.
+const CAST_RADIUS: f32 = 2.6;
+/// How long before an entry players are looked for, ticks.
+const CAST_LEAD: i32 = 40;
+/// Shortest way to an entry and back from an exit, ticks; drawn from this range.
+const BRIDGE_TICKS: std::ops::Range<i32> = 18..75;
+/// Longer windows than this are not ripped up, ticks.
+const LONGEST_BRIDGE: i32 = 150;
+/// Faster than this on average no one is asked to be somewhere, m/s.
+const EASY_SPEED: f32 = 1.15;
+/// A turn that costs no time, radians, and what a radian more is worth in metres of way.
+const EASY_TURN: f32 = 0.5;
+const TURN_WAY: f32 = 0.5;
+/// Most people who are asked to step aside for a patch.
+const MAX_BYSTANDERS: usize = 4;
+/// Ticks before and after their collision that they may use to do so.
+const BYSTANDER_TICKS: i32 = 15;
+/// Room that the ends of a patch must have to walls, metres.
+const WALL_ROOM: f32 = 0.4;
+
+/// One role of the new patch and who is to play it.
+struct Part {
+    track: TrackId,
+    role: u32,
+    entry: Port,
+    exit: Port,
+    /// Pieces `keep_before..keep_after` of the track are ripped up.
+    keep_before: usize,
+    keep_after: usize,
+}
+
+/// Tries to put one instance of `kind` into the tiling.
+pub(super) fn enrich(tracks: &mut Tracks, kind: u32, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
+    let Some(parts) = cast(tracks, kind, rng) else { return false };
+    let mut undo = Undo::default();
+    if perform(tracks, &parts, taste, rng, &mut undo).is_some() {
+        tracks.commit(undo);
+        true
+    } else {
+        tracks.roll_back(undo);
+        false
+    }
+}
+
+/// Chooses place, time and players. The first player's track leads exactly into the patch.
+fn cast(tracks: &Tracks, kind: u32, rng: &mut ChaCha8Rng) -> Option<Vec<Part>> {
+    let library = tracks.library;
+    let roles = library.roles_of(kind);
+    let lead_role = rng.random_range(roles.clone());
+    let lead_track = rng.random_range(0..tracks.tracks.len());
+    let lead = &library.roles[lead_role as usize];
+    let horizon = tracks.domain.horizon;
+    let joints: Vec<usize> = (0..tracks.tracks[lead_track].len())
+        .filter(|&i| {
+            let port = tracks.port(lead_track, i);
+            port.group == lead.entry_group && port.tick > 15 - lead.ticks && port.tick < horizon - 15
+        })
+        .collect();
+    if joints.is_empty() {
+        return None;
+    }
+    let joint = joints[rng.random_range(0..joints.len())];
+    let port = tracks.port(lead_track, joint);
+    let world_from_patch = port.at.then(lead.entry.inverse());
+    let clock = port.tick - lead.begin;
+
+    let mut parts: Vec<Part> = Vec::with_capacity(roles.len());
+    let mut near = Vec::new();
+    for role in roles {
+        let (mut entry, exit) = ports(tracks, role, world_from_patch, clock);
+        if role == lead_role {
+            // Not but for rounding: the very same numbers.
+            entry = port;
+        }
+        let room = |p: &Port| p.tick < 0 || p.tick > horizon || tracks.domain.holds(p.at.position, WALL_ROOM);
+        if !room(&entry) || !room(&exit) {
+            return None;
+        }
+        let (track, keep_before) = if role == lead_role {
+            (lead_track, joint)
+        } else {
+            let taken = |t: TrackId| t == lead_track || parts.iter().any(|p| p.track == t);
+            let track = player(tracks, &entry, taken, &mut near, rng)?;
+            (track, rip_from(tracks, track, &entry, rng)?)
+        };
+        let keep_after = rip_to(tracks, track, keep_before, &entry, &exit, rng)?;
+        parts.push(Part { track, role, entry, exit, keep_before, keep_after });
+    }
+    Some(parts)
+}
+
+fn ports(tracks: &Tracks, role: u32, world_from_patch: Ground, clock: i32) -> (Port, Port) {
+    let r = &tracks.library.roles[role as usize];
+    let entry = Port { at: world_from_patch.then(r.entry), tick: clock + r.begin, group: r.entry_group };
+    let exit = Port { at: entry.at.then(r.exit), tick: entry.tick + r.ticks, group: r.exit_group };
+    (entry, exit)
+}
+
+/// One of those who could be at `entry` in time.
+fn player(
+    tracks: &Tracks,
+    entry: &Port,
+    taken: impl Fn(TrackId) -> bool,
+    near: &mut Vec<PieceId>,
+    rng: &mut ChaCha8Rng,
+) -> Option<TrackId> {
+    let tick = (entry.tick - CAST_LEAD).clamp(0, tracks.domain.horizon - 1);
+    tracks.occupancy.near(tick, entry.at.position, CAST_RADIUS, near);
+    let mut candidates: Vec<TrackId> = near.iter().map(|&id| tracks.owner(id)).filter(|&t| !taken(t)).collect();
+    candidates.sort_unstable();
+    (!candidates.is_empty()).then(|| candidates[rng.random_range(0..candidates.len())])
+}
+
+/// First piece to rip up so that the person can walk to `entry` in time; 0 if the person begins there.
+fn rip_from(tracks: &Tracks, track: TrackId, entry: &Port, rng: &mut ChaCha8Rng) -> Option<usize> {
+    let latest = entry.tick - rng.random_range(BRIDGE_TICKS);
+    let mut index = tracks.tracks[track].partition_point(|&id| tracks.piece(id).begin <= latest);
+    while index > 1 {
+        index -= 1;
+        let from = tracks.port(track, index);
+        if !no_patch_between(tracks, track, from.tick, entry.tick) || entry.tick - from.tick > LONGEST_BRIDGE {
+            return None;
+        }
+        if in_reach(&from, entry) {
+            return Some(index);
+        }
+    }
+    no_patch_between(tracks, track, i32::MIN, entry.tick).then_some(0)
+}
+
+/// First piece to keep after the patch; the number of pieces if the rest of the time is planned anew.
+fn rip_to(
+    tracks: &Tracks,
+    track: TrackId,
+    keep_before: usize,
+    entry: &Port,
+    exit: &Port,
+    rng: &mut ChaCha8Rng,
+) -> Option<usize> {
+    let earliest = exit.tick + rng.random_range(BRIDGE_TICKS);
+    let count = tracks.tracks[track].len();
+    let mut index = tracks.tracks[track].partition_point(|&id| tracks.piece(id).begin < earliest).max(keep_before);
+    while index < count {
+        let to = tracks.port(track, index);
+        if !no_patch_between(tracks, track, entry.tick, to.tick) {
+            return None;
+        }
+        if to.tick - exit.tick > LONGEST_BRIDGE {
+            break;
+        }
+        if in_reach(exit, &to) {
+            return Some(index);
+        }
+        index += 1;
+    }
+    no_patch_between(tracks, track, entry.tick, i32::MAX).then_some(count)
+}
+
+/// True if one can walk from one port to the other at ease, turning included.
+fn in_reach(from: &Port, to: &Port) -> bool {
+    let left = (to.tick - from.tick) as f32 / FPS;
+    let way = to.at.position - from.at.position;
+    let turn = |heading: f32| (wrap_angle(complex::arg(way) - heading).abs() - EASY_TURN).max(0.0);
+    let turning = if way.length() > 0.5 {
+        turn(from.at.heading) + turn(to.at.heading)
+    } else {
+        (wrap_angle(to.at.heading - from.at.heading).abs() - EASY_TURN).max(0.0)
+    };
+    way.length() + TURN_WAY * turning < EASY_SPEED * left
+}
+
+/// True if the person is in no patch of several people at any time between the two ticks.
+fn no_patch_between(tracks: &Tracks, track: TrackId, begin: i32, end: i32) -> bool {
+    tracks.tracks[track].iter().all(|&id| {
+        let p = tracks.piece(id);
+        p.end <= begin || p.begin >= end || tracks.people_of(id) == 1
+    })
+}
+
+fn perform(tracks: &mut Tracks, parts: &[Part], taste: Taste, rng: &mut ChaCha8Rng, undo: &mut Undo) -> Option<()> {
+    for part in parts {
+        for i in part.keep_before..part.keep_after {
+            tracks.hide(tracks.tracks[part.track][i], undo);
+        }
+    }
+    let instance = tracks.new_instance();
+    let pieces: Vec<Piece> = parts
+        .iter()
+        .map(|p| Piece::rigid(tracks.library, tracks.domain, p.role, instance, p.entry.at, p.entry.tick))
+        .collect();
+    let bystanders = step_aside(tracks, parts, &pieces, undo)?;
+    let placed: Vec<PieceId> = pieces.into_iter().map(|piece| tracks.add(piece, undo)).collect();
+    let futures = futures(tracks, parts);
+    let mut ways = Vec::with_capacity(parts.len());
+    for (i, part) in parts.iter().enumerate() {
+        let mut way = lead_in(tracks, part, taste, rng, undo)?;
+        way.push(placed[i]);
+        way.extend(lead_out(tracks, part, &parts[futures[i]], taste, rng, undo)?);
+        ways.push(way);
+    }
+    let new_tracks: Vec<Vec<PieceId>> = parts
+        .iter()
+        .zip(ways)
+        .zip(&futures)
+        .map(|((part, way), &future)| {
+            let before = &tracks.tracks[part.track][..part.keep_before];
+            let after = &tracks.tracks[parts[future].track][parts[future].keep_after..];
+            [before, &way, after].concat()
+        })
+        .collect();
+    for (part, pieces) in parts.iter().zip(new_tracks) {
+        tracks.set_track(part.track, pieces, undo);
+    }
+    bystanders.into_iter().try_for_each(|window| tracks.bridge_window(window, taste, rng, undo))
+}
+
+/// Takes out the windows of the tracks that are in the way of `pieces`; `None` if that are too many, or patches of
+/// several people, or walls.
+fn step_aside(tracks: &mut Tracks, parts: &[Part], pieces: &[Piece], undo: &mut Undo) -> Option<Vec<Window>> {
+    let mut windows: Vec<Window> = Vec::new();
+    for piece in pieces {
+        for id in tracks.occupancy.blockers(tracks.library, tracks.domain, piece)? {
+            let track = tracks.owner(id);
+            let index = tracks.index_at(track, tracks.piece(id).begin);
+            if tracks.people_of(id) > 1 || parts.iter().any(|p| p.track == track) {
+                return None;
+            }
+            match windows.iter_mut().find(|w| w.track == track) {
+                Some(window) => {
+                    window.from = window.from.min(index);
+                    window.to = window.to.max(index + 1);
+                }
+                None => windows.push(Window { track, from: index, to: index + 1 }),
+            }
+        }
+    }
+    if windows.len() > MAX_BYSTANDERS {
+        return None;
+    }
+    for window in &mut windows {
+        *window = tracks.widen(*window, BYSTANDER_TICKS)?;
+        tracks.hide_window(*window, undo);
+    }
+    Some(windows)
+}
+
+/// Whose future each part takes over: the pairing with the least way to go (parts are few).
+fn futures(tracks: &Tracks, parts: &[Part]) -> Vec<usize> {
+    let way = |i: usize, j: usize| {
+        let to = tracks.port(parts[j].track, parts[j].keep_after);
+        let left = (to.tick - parts[i].exit.tick) as f32 / FPS;
+        let open = parts[j].keep_after == tracks.tracks[parts[j].track].len();
+        if open { 0.0 } else { (parts[i].exit.at.position.distance(to.at.position) - 0.8 * left).abs() }
+    };
+    let mut order: Vec<usize> = (0..parts.len()).collect();
+    for i in 0..order.len() {
+        for j in i + 1..order.len() {
+            if way(i, order[j]) + way(j, order[i]) < way(i, order[i]) + way(j, order[j]) {
+                order.swap(i, j);
+            }
+        }
+    }
+    order
+}
+
+fn lead_in(
+    tracks: &mut Tracks,
+    part: &Part,
+    taste: Taste,
+    rng: &mut ChaCha8Rng,
+    undo: &mut Undo,
+) -> Option<Vec<PieceId>> {
+    let from = tracks.port(part.track, part.keep_before);
+    if part.entry.tick <= 0 || from == part.entry {
+        return Some(vec![]);
+    }
+    let chain = if part.keep_before == 0 {
+        tracks.search(part.entry, Goal::Since(0), taste, rng)?
+    } else {
+        tracks.search(from, Goal::Port(part.entry), taste, rng)?
+    };
+    Some(tracks.add_chain(chain, undo))
+}
+
+fn lead_out(
+    tracks: &mut Tracks,
+    part: &Part,
+    future: &Part,
+    taste: Taste,
+    rng: &mut ChaCha8Rng,
+    undo: &mut Undo,
+) -> Option<Vec<PieceId>> {
+    let horizon = tracks.domain.horizon;
+    let open = future.keep_after == tracks.tracks[future.track].len();
+    if open && part.exit.tick >= horizon {
+        return Some(vec![]);
+    }
+    let goal = if open { Goal::Until(horizon) } else { Goal::Port(tracks.port(future.track, future.keep_after)) };
+    let chain = tracks.search(part.exit, goal, taste, rng)?;
+    Some(tracks.add_chain(chain, undo))
+}

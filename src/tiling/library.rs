@@ -1,0 +1,177 @@
+//! The patch set made ready for planning: everything that depends on the kind alone is computed once here.
+
+use rayon::prelude::*;
+
+use super::footprint::{Footprint, footprints, reach};
+use crate::deform::{Limits, Strand};
+use crate::geom::Ground;
+use crate::motion::MotionPath;
+use crate::patch::PatchSet;
+
+/// Growth of footprints: what blending, foot locking and sampling between frames may move a body, metres.
+const MARGIN: f32 = 0.02;
+/// Longest strand of two single-person kinds that closes a gap, in frames.
+const MAX_STRAND_FRAMES: usize = 110;
+
+/// A role of a kind: one fragment, relative to its own entry.
+pub(super) struct Role {
+    /// Index of the kind.
+    pub kind: u32,
+    /// Index of the fragment in the kind.
+    pub role: u32,
+    /// The path seen from its first frame.
+    pub path: MotionPath,
+    /// Where it ends, seen from where it begins.
+    pub exit: Ground,
+    /// Duration in ticks if not warped: frames - 1.
+    pub ticks: i32,
+    /// Pose group of the entry.
+    pub entry_group: u32,
+    /// Pose group of the exit.
+    pub exit_group: u32,
+    /// `patch_from_entry`.
+    pub entry: Ground,
+    /// Tick of the patch's clock at which it begins.
+    pub begin: i32,
+    /// Footprints per frame.
+    pub footprints: Vec<Footprint>,
+    /// Radius of each footprint around the path point.
+    pub reach: Vec<f32>,
+}
+
+/// A step of the search: a single-person role taken from its entry (forward) or from its exit (backward).
+#[derive(Clone, Copy)]
+pub(super) struct Move {
+    /// The role.
+    pub role: u32,
+    /// The new state seen from the old one.
+    pub to: Ground,
+    /// Duration.
+    pub ticks: i32,
+    /// Pose group of the new state.
+    pub group: u32,
+    /// Mean speed in m/s.
+    pub speed: f32,
+}
+
+/// One or two single-person roles that can be deformed together between two given ends.
+pub(super) struct Closing {
+    /// The roles; the second is there only for pairs.
+    pub roles: [Option<u32>; 2],
+    /// Path of both.
+    pub strand: Strand,
+    /// Fewest and most ticks.
+    pub ticks: (i32, i32),
+}
+
+/// A patch set made ready for planning.
+pub(super) struct Library<'a> {
+    /// The set.
+    pub set: &'a PatchSet,
+    /// Deformation limits.
+    pub limits: Limits,
+    /// All roles of all kinds, kind by kind.
+    pub roles: Vec<Role>,
+    /// Index of each kind's first role.
+    pub first_role: Vec<u32>,
+    /// Kinds of two or more people.
+    pub multi: Vec<u32>,
+    /// Moves by the pose group they start from, forward in time.
+    pub forward: Vec<Vec<Move>>,
+    /// Moves by the pose group they start from, backward in time.
+    pub backward: Vec<Vec<Move>>,
+    /// By entry group * groups + exit group.
+    pub closings: Vec<Vec<Closing>>,
+    /// Largest reach of any footprint.
+    pub max_reach: f32,
+}
+
+impl<'a> Library<'a> {
+    /// Prepares `set`. O(total frames + pairs of single-person kinds x frames).
+    pub fn new(set: &'a PatchSet, limits: Limits) -> Self {
+        let sources: Vec<(u32, u32)> =
+            (0..set.kinds.len()).flat_map(|k| (0..set.kinds[k].people()).map(move |r| (k as u32, r as u32))).collect();
+        let roles: Vec<Role> = sources.par_iter().map(|&(k, r)| prepare(set, k, r)).collect();
+        let first_role = (0..set.kinds.len() as u32)
+            .map(|k| sources.iter().position(|s| s.0 == k).expect("validated: no kind without people") as u32)
+            .collect();
+        let is_single = |role: &Role| set.kinds[role.kind as usize].people() == 1;
+        let groups = set.groups.len();
+        let (mut forward, mut backward) = (vec![Vec::new(); groups], vec![Vec::new(); groups]);
+        for (i, role) in roles.iter().enumerate().filter(|(_, r)| is_single(r)) {
+            let speed = role.path.points.windows(2).map(|w| w[0].distance(w[1])).sum::<f32>() / role.ticks as f32
+                * crate::motion::FPS;
+            let step = |to, group| Move { role: i as u32, to, ticks: role.ticks, group, speed };
+            forward[role.entry_group as usize].push(step(role.exit, role.exit_group));
+            backward[role.exit_group as usize].push(step(role.exit.inverse(), role.entry_group));
+        }
+        let closings = closings(&roles, &limits, groups, is_single);
+        Self {
+            set,
+            limits,
+            first_role,
+            multi: (0..set.kinds.len() as u32).filter(|&k| set.kinds[k as usize].people() > 1).collect(),
+            forward,
+            backward,
+            closings,
+            max_reach: roles.iter().flat_map(|r| &r.reach).copied().fold(0.0, f32::max),
+            roles,
+        }
+    }
+
+    /// The roles of a kind.
+    pub fn roles_of(&self, kind: u32) -> std::ops::Range<u32> {
+        let first = self.first_role[kind as usize];
+        first..first + self.set.kinds[kind as usize].people() as u32
+    }
+}
+
+fn prepare(set: &PatchSet, kind: u32, role: u32) -> Role {
+    let fragment = &set.kinds[kind as usize].fragments[role as usize];
+    let source = &fragment.motion.path;
+    let entry = source.at(0);
+    let entry_from_patch = entry.inverse();
+    let path = MotionPath {
+        points: source.points.iter().map(|&p| entry_from_patch.apply(p)).collect(),
+        headings: source.headings.iter().map(|h| h - entry.heading).collect(),
+    };
+    let footprints = footprints(&fragment.motion, MARGIN);
+    Role {
+        kind,
+        role,
+        exit: path.at(path.len() - 1),
+        ticks: path.len() as i32 - 1,
+        entry_group: fragment.entry_group,
+        exit_group: fragment.exit_group,
+        entry,
+        begin: fragment.begin as i32,
+        reach: footprints.iter().map(reach).collect(),
+        footprints,
+        path,
+    }
+}
+
+fn closings(roles: &[Role], limits: &Limits, groups: usize, is_single: impl Fn(&Role) -> bool) -> Vec<Vec<Closing>> {
+    let strands: Vec<Option<Strand>> = roles.iter().map(|r| is_single(r).then(|| Strand::new(&r.path))).collect();
+    let mut table: Vec<Vec<Closing>> = (0..groups * groups).map(|_| Vec::new()).collect();
+    let mut add = |first: usize, second: Option<usize>, strand: Strand| {
+        let ranges = [Some(first), second].into_iter().flatten().map(|r| limits.tick_range(roles[r].path.len()));
+        let ticks = ranges.fold((0, 0), |sum, range| (sum.0 + range.0, sum.1 + range.1));
+        let (from, to) = (roles[first].entry_group, roles[second.unwrap_or(first)].exit_group);
+        let roles = [Some(first as u32), second.map(|s| s as u32)];
+        table[from as usize * groups + to as usize].push(Closing { roles, strand, ticks });
+    };
+    for (i, first) in strands.iter().enumerate() {
+        let Some(first) = first else { continue };
+        add(i, None, first.clone());
+        for (j, second) in strands.iter().enumerate() {
+            let Some(second) = second else { continue };
+            let fits =
+                roles[i].exit_group == roles[j].entry_group && first.frames() + second.frames() <= MAX_STRAND_FRAMES;
+            if fits {
+                add(i, Some(j), Strand::chained(first, second));
+            }
+        }
+    }
+    table
+}

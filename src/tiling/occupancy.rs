@@ -1,0 +1,320 @@
+//! Who is where when: placed pieces and, per tick, a grid of their bodies.
+
+use std::ops::{ControlFlow, RangeInclusive};
+
+use glam::Vec2;
+
+use super::bridge::NO_INSTANCE;
+use super::domain::Domain;
+use super::footprint::{DISCS, Footprint};
+use super::library::Library;
+use crate::geom::{Ground, Turn};
+use crate::motion::MotionPath;
+
+/// Cell size of the grid in metres.
+const CELL: f32 = 1.0;
+/// Most bodies whose path points lie in one cell; a fuller cell counts as blocked.
+const CELL_BODIES: usize = 7;
+
+/// Index of a placed piece.
+pub(super) type PieceId = u32;
+
+/// A body at one tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Body {
+    position: Vec2,
+    turn: Turn,
+    reach: f32,
+    frame: u32,
+}
+
+/// One role of an instance, placed: from tick `begin` to tick `end`, along `path` (world, one sample per source frame).
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    /// Index of the role in the library.
+    pub role: u32,
+    /// Index of the instance.
+    pub instance: u32,
+    /// Tick of the entry.
+    pub begin: i32,
+    /// Tick of the exit.
+    pub end: i32,
+    /// The deformed path.
+    pub path: MotionPath,
+    /// The bodies on the ticks it occupies: [begin, end) cut to [0, horizon).
+    bodies: Vec<Body>,
+}
+
+impl Piece {
+    /// A role placed rigidly with its entry at `from`.
+    pub fn rigid(library: &Library, domain: &Domain, role: u32, instance: u32, from: Ground, begin: i32) -> Self {
+        let source = &library.roles[role as usize];
+        let path = MotionPath {
+            points: source.path.points.iter().map(|&p| from.apply(p)).collect(),
+            headings: source.path.headings.iter().map(|h| h + from.heading).collect(),
+        };
+        Self::along(library, domain, role, instance, path, begin, begin + source.ticks)
+    }
+
+    /// A role placed along a deformed path.
+    pub fn along(
+        library: &Library,
+        domain: &Domain,
+        role: u32,
+        instance: u32,
+        path: MotionPath,
+        begin: i32,
+        end: i32,
+    ) -> Self {
+        let source = &library.roles[role as usize];
+        let last = path.len() - 1;
+        let step = last as f32 / (end - begin) as f32;
+        let bodies = (begin.max(0)..end.min(domain.horizon)).map(|tick| {
+            let at = (tick - begin) as f32 * step;
+            let i = (at as usize).min(last - 1);
+            let t = at - i as f32;
+            let frame = (at + 0.5) as usize;
+            Body {
+                position: path.points[i].lerp(path.points[i + 1], t),
+                turn: Turn::from_angle(path.headings[i] * (1.0 - t) + path.headings[i + 1] * t),
+                reach: source.reach[frame],
+                frame: frame as u32,
+            }
+        });
+        let bodies = bodies.collect();
+        Self { role, instance, begin, end, path, bodies }
+    }
+
+    /// State at the entry.
+    pub fn entry(&self) -> Ground {
+        self.path.at(0)
+    }
+
+    /// State at the exit.
+    pub fn exit(&self) -> Ground {
+        self.path.at(self.path.len() - 1)
+    }
+
+    fn first_tick(&self) -> i32 {
+        self.begin.max(0)
+    }
+
+    /// Ground position at a tick the piece occupies.
+    pub fn position(&self, tick: i32) -> Option<Vec2> {
+        self.bodies.get(usize::try_from(tick - self.first_tick()).ok()?).map(|b| b.position)
+    }
+
+    /// Ticks inside the domain's time.
+    pub fn ticks_inside(&self) -> usize {
+        self.bodies.len()
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Cell {
+    count: u32,
+    pieces: [PieceId; CELL_BODIES],
+}
+
+/// All placed pieces.
+pub(super) struct Occupancy {
+    pieces: Vec<Option<Piece>>,
+    free: Vec<PieceId>,
+    cells: Vec<Cell>,
+    columns: i32,
+    rows: i32,
+    origin: Vec2,
+    max_reach: f32,
+}
+
+impl Occupancy {
+    /// An empty one.
+    pub fn new(domain: &Domain, library: &Library) -> Self {
+        let size = ((domain.max - domain.min) / CELL).ceil();
+        let (columns, rows) = (size.x as i32 + 1, size.y as i32 + 1);
+        let empty = Cell { count: 0, pieces: [0; CELL_BODIES] };
+        Self {
+            pieces: vec![],
+            free: vec![],
+            cells: vec![empty; (columns * rows * domain.horizon) as usize],
+            columns,
+            rows,
+            origin: domain.min,
+            max_reach: library.max_reach,
+        }
+    }
+
+    /// A placed piece.
+    pub fn piece(&self, id: PieceId) -> &Piece {
+        self.pieces[id as usize].as_ref().expect("a live piece")
+    }
+
+    /// Takes a piece in and shows its bodies.
+    pub fn insert(&mut self, piece: Piece) -> PieceId {
+        let id = self.free.pop().unwrap_or_else(|| {
+            self.pieces.push(None);
+            self.pieces.len() as PieceId - 1
+        });
+        self.pieces[id as usize] = Some(piece);
+        self.show(id);
+        id
+    }
+
+    /// Forgets a piece that is hidden.
+    pub fn forget(&mut self, id: PieceId) {
+        self.pieces[id as usize] = None;
+        self.free.push(id);
+    }
+
+    /// Puts the bodies of a hidden piece back.
+    pub fn show(&mut self, id: PieceId) {
+        let piece = self.pieces[id as usize].take().expect("a live piece");
+        for (tick, body) in (piece.first_tick()..).zip(&piece.bodies) {
+            let cell = self.cell_of(tick, body.position);
+            let cell = &mut self.cells[cell];
+            cell.pieces[cell.count as usize] = id;
+            cell.count += 1;
+        }
+        self.pieces[id as usize] = Some(piece);
+    }
+
+    /// Takes the bodies of a piece out, keeping the piece.
+    pub fn hide(&mut self, id: PieceId) {
+        let piece = self.pieces[id as usize].take().expect("a live piece");
+        for (tick, body) in (piece.first_tick()..).zip(&piece.bodies) {
+            let cell = self.cell_of(tick, body.position);
+            let cell = &mut self.cells[cell];
+            let at = cell.pieces[..cell.count as usize].iter().position(|&p| p == id).expect("shown");
+            cell.count -= 1;
+            cell.pieces[at] = cell.pieces[cell.count as usize];
+        }
+        self.pieces[id as usize] = Some(piece);
+    }
+
+    fn cell_of(&self, tick: i32, position: Vec2) -> usize {
+        let c = ((position - self.origin) / CELL).floor();
+        let (x, z) = ((c.x as i32).clamp(0, self.columns - 1), (c.y as i32).clamp(0, self.rows - 1));
+        ((tick * self.rows + z) * self.columns + x) as usize
+    }
+
+    /// True if the piece stays inside the domain and clear of all bodies shown, but for those of its own instance.
+    /// Frames are probed coarse to fine.
+    pub fn is_free(&self, library: &Library, domain: &Domain, piece: &Piece) -> bool {
+        let n = piece.bodies.len();
+        let free = |i: usize| {
+            self.is_inside(library, domain, piece, i)
+                && self.meet(library, piece, i, &mut |_| ControlFlow::Break(())).is_continue()
+        };
+        (0..n).step_by(8).all(free) && (4..n).step_by(8).all(free) && (0..n).filter(|i| i % 4 != 0).all(free)
+    }
+
+    /// The pieces whose bodies are in the way of `piece`, sorted; `None` if a wall or a crush is.
+    pub fn blockers(&self, library: &Library, domain: &Domain, piece: &Piece) -> Option<Vec<PieceId>> {
+        let n = piece.bodies.len();
+        if !(0..n).all(|i| self.is_inside(library, domain, piece, i)) {
+            return None;
+        }
+        let mut found = Vec::new();
+        for i in 0..n {
+            let crush = self.meet(library, piece, i, &mut |id| {
+                if let Some(id) = id {
+                    found.push(id);
+                    return ControlFlow::Continue(());
+                }
+                ControlFlow::Break(())
+            });
+            if crush.is_break() {
+                return None;
+            }
+        }
+        found.sort_unstable();
+        found.dedup();
+        Some(found)
+    }
+
+    fn is_inside(&self, library: &Library, domain: &Domain, piece: &Piece, i: usize) -> bool {
+        let body = &piece.bodies[i];
+        domain.holds(body.position, body.reach) || {
+            let footprint = &library.roles[piece.role as usize].footprints[body.frame as usize];
+            world_discs(body, footprint).iter().all(|d| domain.holds(d.truncate(), d.z))
+        }
+    }
+
+    /// Calls `met` with each piece whose body overlaps body `i` of `piece`, or with `None` for a cell that is full,
+    /// until it breaks.
+    fn meet(
+        &self,
+        library: &Library,
+        piece: &Piece,
+        i: usize,
+        met: &mut impl FnMut(Option<PieceId>) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let body = &piece.bodies[i];
+        let tick = piece.first_tick() + i as i32;
+        let footprint = |role: u32, frame: u32| &library.roles[role as usize].footprints[frame as usize];
+        let reach = body.reach + self.max_reach;
+        let (columns, rows) = self.cells_within(body.position, reach);
+        for z in rows {
+            for x in columns.clone() {
+                let cell = &self.cells[((tick * self.rows + z) * self.columns + x) as usize];
+                if cell.count as usize == CELL_BODIES {
+                    met(None)?;
+                }
+                for &id in &cell.pieces[..cell.count as usize] {
+                    let other = self.piece(id);
+                    let theirs = &other.bodies[(tick - other.first_tick()) as usize];
+                    let apart = body.reach + theirs.reach;
+                    let far = body.position.distance_squared(theirs.position) >= apart * apart;
+                    if far || other.instance == piece.instance && piece.instance != NO_INSTANCE {
+                        continue;
+                    }
+                    let own = world_discs(body, footprint(piece.role, body.frame));
+                    if overlap(&own, &world_discs(theirs, footprint(other.role, theirs.frame))) {
+                        met(Some(id))?;
+                    }
+                }
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn cells_within(&self, position: Vec2, distance: f32) -> (RangeInclusive<i32>, RangeInclusive<i32>) {
+        let low = ((position - distance - self.origin) / CELL).floor();
+        let high = ((position + distance - self.origin) / CELL).floor();
+        let columns = (low.x as i32).max(0)..=(high.x as i32).min(self.columns - 1);
+        (columns, (low.y as i32).max(0)..=(high.y as i32).min(self.rows - 1))
+    }
+
+    /// Ids of the pieces whose path points lie within `distance` of `position` at `tick`, in no particular order.
+    pub fn near(&self, tick: i32, position: Vec2, distance: f32, out: &mut Vec<PieceId>) {
+        out.clear();
+        let (columns, rows) = self.cells_within(position, distance);
+        for z in rows {
+            for x in columns.clone() {
+                let cell = &self.cells[((tick * self.rows + z) * self.columns + x) as usize];
+                out.extend(
+                    cell.pieces[..cell.count as usize]
+                        .iter()
+                        .filter(|&&id| self.piece(id).position(tick).is_some_and(|p| p.distance(position) < distance)),
+                );
+            }
+        }
+    }
+}
+
+fn world_discs(body: &Body, footprint: &Footprint) -> Footprint {
+    footprint.map(|d| (body.position + body.turn.apply(d.truncate())).extend(d.z))
+}
+
+fn overlap(a: &Footprint, b: &Footprint) -> bool {
+    for p in a {
+        for q in b {
+            let apart = p.z + q.z;
+            if p.truncate().distance_squared(q.truncate()) < apart * apart {
+                return true;
+            }
+        }
+    }
+    debug_assert_eq!(a.len(), DISCS);
+    false
+}
