@@ -1,0 +1,63 @@
+/** The finished crowd as the studio sees it. Names and units as in src/stage/crowd.rs: metres, seconds, radians. */
+
+export type Vec2 = readonly [x: number, z: number];
+export type Vec3 = readonly [x: number, y: number, z: number];
+
+export interface Joint {
+  name: string;
+  /** Index of the parent; -1 for the root. */
+  parent: number;
+  offset: Vec3;
+}
+
+export interface Kind {
+  name: string;
+  labels: string[];
+  /** Number of people. */
+  people: number;
+}
+
+/** One fragment of an instance in the life of a character. Frames; `begin` is negative where time crops it. */
+export interface Fragment {
+  instance: number;
+  role: number;
+  begin: number;
+  end: number;
+  /** The deformed path's samples in `pathPoints`. */
+  firstSample: number;
+  samples: number;
+}
+
+export interface Character {
+  /** First frame of the final motion on the crowd's clock. */
+  begin: number;
+  frames: number;
+  /** Place of that frame in `root` and `rotations`. */
+  firstFrame: number;
+  fragments: Fragment[];
+}
+
+export interface Crowd {
+  fps: number;
+  /** As text: 64 bits do not fit a number. */
+  seed: string;
+  joints: Joint[];
+  region: Vec2[];
+  obstacles: Vec2[][];
+  lastFrame: number;
+  kinds: Kind[];
+  /** Kind of every instance. */
+  instances: number[];
+  characters: Character[];
+  /** x, y, z per frame. */
+  root: Float32Array;
+  /** x, y, z, w per frame and joint, times 32767; hips global, others local. */
+  rotations: Int16Array;
+  /** x, z per path sample. */
+  pathPoints: Float32Array;
+}
+
+/** Length of the crowd's life in seconds. */
+export function duration(crowd: Crowd): number {
+  return crowd.lastFrame / crowd.fps;
+}

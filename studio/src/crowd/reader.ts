@@ -1,0 +1,136 @@
+/** Reads a crowd file (`*.crowd`); see src/stage/file.rs for the format. */
+
+import { Container, count, FileProblem, finite, list, object, text, whole } from "./container";
+import type { Character, Crowd, Fragment, Joint, Kind, Vec2, Vec3 } from "./model";
+
+export const MAGIC = "CQCROWD";
+export const VERSION = 1;
+
+/** The crowd in `buffer`. Throws a FileProblem that names the place. */
+export function readCrowd(buffer: ArrayBuffer): Crowd {
+  const file = Container.open(buffer, MAGIC, VERSION);
+  const { header } = file;
+  const domain = object(header.domain, "header.domain");
+  const joints = list(object(header.skeleton, "header.skeleton").joints, "header.skeleton.joints").map(joint);
+  const root = file.array("root", "f32");
+  const rotations = file.array("rotations", "i16");
+  const pathPoints = file.array("path_points", "f32");
+  const crowd: Crowd = {
+    fps: finite(header.fps, "header.fps"),
+    seed: seedText(header.seed, file.headerText),
+    joints,
+    region: polygon(domain.region, "header.domain.region"),
+    obstacles: list(domain.obstacles, "header.domain.obstacles").map((o, i) => polygon(o, `obstacle ${i}`)),
+    lastFrame: count(domain.last_frame, "header.domain.last_frame"),
+    kinds: list(object(header.set, "header.set").kinds, "header.set.kinds").map(kind),
+    instances: list(header.instances, "header.instances").map((v, i) => {
+      return count(object(v, `instance ${i}`).kind, `instance ${i}, kind`);
+    }),
+    characters: characters(list(header.characters, "header.characters")),
+    root,
+    rotations,
+    pathPoints,
+  };
+  checkLengths(crowd);
+  checkReferences(crowd);
+  return crowd;
+}
+
+function seedText(value: unknown, header: string): string {
+  const rounded = finite(value, "header.seed");
+  const exact = [...header.matchAll(/"seed":\s*(\d+)/g)].find((m) => Number(m[1]) === rounded);
+  return exact?.[1] ?? String(rounded);
+}
+
+function joint(value: unknown, index: number, all: unknown[]): Joint {
+  const place = `joint ${index}`;
+  const v = object(value, place);
+  const parent = v.parent === null || v.parent === undefined ? -1 : count(v.parent, `${place}, parent`);
+  if (parent >= index || (parent < 0 && index > 0)) {
+    throw new FileProblem(place, `expected a parent before it among ${all.length} joints, found ${parent}`);
+  }
+  return { name: text(v.name, `${place}, name`), parent, offset: vector(v.offset, 3, `${place}, offset`) as Vec3 };
+}
+
+function vector(value: unknown, length: number, place: string): readonly number[] {
+  const v = list(value, place).map((n) => finite(n, place));
+  if (v.length !== length) throw new FileProblem(place, `expected ${length} numbers, found ${v.length}`);
+  return v;
+}
+
+function polygon(value: unknown, place: string): Vec2[] {
+  const points = list(object(value, place).points, `${place}, points`).map((p) => vector(p, 2, place) as Vec2);
+  if (points.length < 3) throw new FileProblem(place, `expected at least 3 corners, found ${points.length}`);
+  return points;
+}
+
+function kind(value: unknown, index: number): Kind {
+  const place = `kind ${index}`;
+  const v = object(value, place);
+  const people = list(v.fragments, `${place}, fragments`).length;
+  const labels = list(v.labels, `${place}, labels`).map((l) => text(l, `${place}, labels`));
+  return { name: text(v.name, `${place}, name`), labels, people };
+}
+
+function characters(values: unknown[]): Character[] {
+  let firstFrame = 0;
+  let firstSample = 0;
+  return values.map((value, index) => {
+    const place = `character ${index}`;
+    const v = object(value, place);
+    const fragments = list(v.fragments, `${place}, fragments`).map((f, k) => {
+      const fragment = readFragment(f, `${place}, fragment ${k}`, firstSample);
+      firstSample += fragment.samples;
+      return fragment;
+    });
+    const frames = count(v.frames, `${place}, frames`);
+    const character = { begin: count(v.begin, `${place}, begin`), frames, firstFrame, fragments };
+    firstFrame += frames;
+    return character;
+  });
+}
+
+function readFragment(value: unknown, place: string, firstSample: number): Fragment {
+  const v = object(value, place);
+  const begin = whole(v.begin, `${place}, begin`);
+  const end = whole(v.end, `${place}, end`);
+  if (end <= begin) throw new FileProblem(place, `ends at frame ${end} before it begins at ${begin}`);
+  return {
+    instance: count(v.instance, `${place}, instance`),
+    role: count(v.role, `${place}, role`),
+    begin,
+    end,
+    firstSample,
+    samples: count(v.samples, `${place}, samples`),
+  };
+}
+
+function checkLengths(crowd: Crowd): void {
+  const frames = crowd.characters.reduce((sum, c) => sum + c.frames, 0);
+  const samples = crowd.characters.reduce((sum, c) => c.fragments.reduce((s, f) => s + f.samples, sum), 0);
+  const expectations: [string, number, number][] = [
+    ["root", crowd.root.length, frames * 3],
+    ["rotations", crowd.rotations.length, frames * crowd.joints.length * 4],
+    ["path_points", crowd.pathPoints.length, samples * 2],
+  ];
+  for (const [name, found, expected] of expectations) {
+    if (found !== expected) {
+      throw new FileProblem(`array ${name}`, `expected ${expected} numbers for its characters, found ${found}`);
+    }
+  }
+}
+
+function checkReferences(crowd: Crowd): void {
+  if (crowd.fps <= 0) throw new FileProblem("header.fps", `expected a positive rate, found ${crowd.fps}`);
+  for (const [i, kind] of crowd.instances.entries()) {
+    if (kind >= crowd.kinds.length) throw new FileProblem(`instance ${i}`, `kind ${kind} does not exist`);
+  }
+  for (const [i, character] of crowd.characters.entries()) {
+    for (const [k, f] of character.fragments.entries()) {
+      const kind = crowd.kinds[crowd.instances[f.instance] ?? -1];
+      if (kind === undefined || f.role >= kind.people) {
+        throw new FileProblem(`character ${i}, fragment ${k}`, `instance ${f.instance} has no role ${f.role}`);
+      }
+    }
+  }
+}

@@ -1,0 +1,92 @@
+/** The wiring: everything is made and connected here, and only here. */
+
+import "@fontsource-variable/inter/wght.css";
+import "./style.css";
+import { debugHandle } from "./debug";
+import { Picture } from "./draw/picture";
+import { loadCrowd, loadReport } from "./load";
+import { installInspector } from "./panels/inspector";
+import { installMessage } from "./panels/message";
+import { installStats } from "./panels/stats";
+import { installTimeline } from "./panels/timeline";
+import { installToolbar } from "./panels/toolbar";
+import { readParameters } from "./parameters";
+import { Player } from "./play/player";
+import { COLOR_MODES, OUTLINES, Store } from "./store";
+import { installKeys } from "./tools/keys";
+import { installPicking } from "./tools/picking";
+
+const parameters = readParameters(location.search);
+const canvas = document.querySelector("canvas") as HTMLCanvasElement;
+const page = document.querySelector("#page") as HTMLElement;
+document.body.classList.toggle("bare", parameters.bare);
+
+const store = new Store();
+store.set("view", parameters.view);
+store.set("color", parameters.color);
+store.set("outlines", parameters.outlines);
+
+const player = new Player(store);
+installMessage(page, store);
+installStats(page, store);
+installToolbar(page, store);
+installInspector(page, store, player);
+installTimeline(page, store, player);
+installKeys(store, player, {
+  color: () => store.set("color", after(COLOR_MODES, store.get("color"))),
+  outlines: () => store.set("outlines", after(OUTLINES, store.get("outlines"))),
+});
+
+const picture = openPicture();
+if (picture) {
+  installPicking(canvas, store, picture);
+  window.crowdquilt = debugHandle(start(picture), store, player, picture);
+}
+
+function after<T>(values: readonly T[], value: T): T {
+  return values[(values.indexOf(value) + 1) % values.length];
+}
+
+function openPicture(): Picture | null {
+  try {
+    return new Picture(store, canvas);
+  } catch {
+    store.set(
+      "problem",
+      "This browser gives no WebGL 2 picture. Turn on hardware acceleration, or use another browser.",
+    );
+    return null;
+  }
+}
+
+async function start(shown: Picture): Promise<void> {
+  try {
+    const crowd = await loadCrowd(parameters.crowd);
+    shown.show(crowd);
+    store.set("crowd", crowd);
+  } catch (error) {
+    store.set("problem", (error as Error).message);
+    throw error;
+  }
+  player.seek(parameters.t);
+  if (parameters.person !== null && store.get("crowd")?.characters[parameters.person]) {
+    store.set("person", parameters.person);
+    store.set("follow", parameters.follow);
+  }
+  store.set("playing", !parameters.paused);
+  void loadReport(parameters.report).then((report) => store.set("report", report));
+  animate(shown);
+  while (shown.stats.pictures === 0) await new Promise(requestAnimationFrame);
+}
+
+function animate(shown: Picture): void {
+  let last = performance.now();
+  const next = (time: number) => {
+    const seconds = Math.max(time - last, 0) / 1000;
+    last = time;
+    player.tick(seconds);
+    shown.frame(seconds);
+    requestAnimationFrame(next);
+  };
+  requestAnimationFrame(next);
+}

@@ -1,0 +1,68 @@
+/** Views, colours and outlines, at the top right. */
+
+import { type ColorMode, type Outlines, type Store, VIEWS, type View } from "../store";
+import { changeView, HELP } from "../tools/keys";
+import { button, choice, el } from "./dom";
+
+const VIEW_TEXT: Record<View, [string, string]> = {
+  persp: ["Perspective", "Perspective (1)"],
+  top: ["Top", "From above (2)"],
+  front: ["Front", "From the front (3)"],
+  loom: ["Loom", "Space and time (L)"],
+};
+
+export function installToolbar(parent: HTMLElement, store: Store): void {
+  const views = choice<View>(
+    "View",
+    VIEWS.map((v) => [v, ...VIEW_TEXT[v]] as const),
+    (v) => changeView(store, v),
+  );
+  const colors = choice<ColorMode>(
+    "Colours",
+    [
+      ["character", "People", "Clothes of every person (C)"],
+      ["kind", "Kinds", "By patch kind (C)"],
+      ["shared", "Together", "Who is in a patch of several people (C)"],
+    ],
+    (color) => store.set("color", color),
+  );
+  const outlines = choice<Outlines>(
+    "Patch outlines",
+    [
+      ["none", "None", "No patch outlines (O)"],
+      ["shared", "Shared", "Outlines of patches of several people (O)"],
+      ["all", "All", "Outlines of all patches (O)"],
+    ],
+    (value) => store.set("outlines", value),
+  );
+  const help = el(
+    "dl",
+    "help panel",
+    HELP.flatMap(([key, what]) => [el("dt", "", [key]), el("dd", "", [what])]),
+  );
+  help.hidden = true;
+  const helpButton = button(
+    "?",
+    "Keys",
+    () => {
+      help.hidden = !help.hidden;
+    },
+    "round",
+  );
+  const field = (label: string, control: HTMLElement) => el("div", "field", [el("span", "label", [label]), control]);
+  parent.append(
+    el("div", "toolbar", [
+      field("View", views.element),
+      field("Colour", colors.element),
+      field("Outlines", outlines.element),
+      helpButton,
+    ]),
+    help,
+  );
+  store.bus.on("view", views.mark);
+  store.bus.on("color", colors.mark);
+  store.bus.on("outlines", outlines.mark);
+  views.mark(store.get("view"));
+  colors.mark(store.get("color"));
+  outlines.mark(store.get("outlines"));
+}
