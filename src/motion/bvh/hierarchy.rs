@@ -133,7 +133,8 @@ impl Hierarchy {
         let word = words.next("a number of channels")?;
         // No joint has more than three positions and three rotations, so a huge count is refused before it is used.
         let count = word.parse::<usize>().ok().filter(|&n| n <= 6);
-        let count = count.ok_or_else(|| bad(words.line, format!("expected 0 to 6 channels, found {}", quoted(word))))?;
+        let count =
+            count.ok_or_else(|| bad(words.line, format!("expected 0 to 6 channels, found {}", quoted(word))))?;
         if self.channels.iter().rev().take(1).any(|&(of, _)| of == joint) {
             let name = &self.skeleton.joints[joint].name;
             return Err(bad(words.line, format!("expected one CHANNELS of joint {}, found another", quoted(name))));

@@ -145,8 +145,9 @@ fn a_deep_chain_costs_no_call_stack() {
     let joint = "JOINT j { OFFSET 0 1 0 CHANNELS 1 Xrotation\n";
     let root = "HIERARCHY ROOT r { OFFSET 0 0 0 CHANNELS 4 Xposition Yposition Zposition Yrotation\n";
     let frame = "0 ".repeat(n + 4);
-    let text = [root, &joint.repeat(n), &"}".repeat(1), &"\n}".repeat(n), "\nMOTION\nFrames: 1\nFrame Time: 1\n", &frame]
-        .concat();
+    let text =
+        [root, &joint.repeat(n), &"}".repeat(1), &"\n}".repeat(n), "\nMOTION\nFrames: 1\nFrame Time: 1\n", &frame]
+            .concat();
     assert_eq!(read(text.as_bytes()).unwrap().skeleton.joints.len(), n + 1);
 }
 
