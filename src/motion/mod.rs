@@ -3,13 +3,20 @@
 mod body;
 pub mod bvh;
 mod clip;
+//pub mod gait;
 pub mod ik;
+pub mod import;
+pub mod mirror;
 mod path;
+pub mod plants;
+pub mod pose;
+pub mod retarget;
 mod skeleton;
 pub mod take;
 
 pub use body::{BODY_CAPSULES, BodyCapsule, BodyPart, body_capsules};
 pub use clip::Clip;
+pub use mirror::motion as mirror;
 pub use path::{Foot, Motion, MotionPath, Plant};
 pub use skeleton::{JOINT_COUNT, Joint, JointId, Skeleton, canonical, joint};
 

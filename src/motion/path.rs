@@ -77,6 +77,24 @@ impl Motion {
         self.path.is_empty()
     }
 
+    /// The motion from frame `begin` to frame `end`, both included; foot plants are clipped to it, and those that
+    /// reach in by a single frame are left out. Panics where `end` is not below the motion's length.
+    pub fn slice(&self, begin: usize, end: usize) -> Self {
+        let clipped = self.plants.iter().filter_map(|p| {
+            let (from, to) = ((p.begin as usize).max(begin), (p.end as usize).min(end));
+            (from < to).then(|| Plant { foot: p.foot, begin: (from - begin) as u32, end: (to - begin) as u32 })
+        });
+        Self {
+            path: MotionPath {
+                points: self.path.points[begin..=end].to_vec(),
+                headings: self.path.headings[begin..=end].to_vec(),
+            },
+            heights: self.heights[begin..=end].to_vec(),
+            rotations: self.rotations[begin * JOINT_COUNT..(end + 1) * JOINT_COUNT].to_vec(),
+            plants: clipped.collect(),
+        }
+    }
+
     /// Rotations of all joints at `frame`, the hips' relative to the path's frame.
     pub fn pose(&self, frame: usize) -> &[Quat] {
         &self.rotations[frame * JOINT_COUNT..(frame + 1) * JOINT_COUNT]

@@ -3,7 +3,10 @@
 //! The generated samples carry one per take as ground truth; for real captures the same file is the hand-written
 //! annotation that says which files make a take, how to import them, and where patches begin and end.
 
+use std::path::Path;
+
 use super::{BodyPart, Foot};
+use crate::{Error, Result};
 
 /// How a capture's file is to be repaired on import. All optional; the defaults trust the file.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -159,4 +162,83 @@ pub struct TakeFile {
     /// Props.
     #[serde(default)]
     pub props: Vec<TakeProp>,
+}
+
+impl TakeFile {
+    /// Reads and checks a take file.
+    ///
+    /// # Errors
+    /// The file cannot be read; the JSON is malformed or has unknown or missing fields (names the line); the first
+    /// of [`validate`](Self::validate)'s problems.
+    pub fn load(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+        Self::parse(&text).map_err(|e| e.in_file(path))
+    }
+
+    /// Reads and checks the text of a take file.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load), without the file's name.
+    pub fn parse(text: &str) -> Result<Self> {
+        let take: Self = serde_json::from_str(text).map_err(|e| {
+            let place = format!("line {} column {}", e.line(), e.column());
+            Error::invalid("take", place, e.to_string())
+        })?;
+        match take.validate().into_iter().next() {
+            Some(problem) => Err(problem),
+            None => Ok(take),
+        }
+    }
+
+    /// All problems: another format or version, no people, people who do not exist, times that are not finite,
+    /// negative or end before they begin, patches without roles or with one person twice.
+    pub fn validate(&self) -> Vec<Error> {
+        let mut problems = Vec::new();
+        let mut bad = |place: String, problem: String| problems.push(Error::invalid("take", place, problem));
+        if (self.format.as_str(), self.version) != ("crowdquilt-take", 1) {
+            let found = format!("'{}' version {}", self.format, self.version);
+            bad("format".into(), format!("expected 'crowdquilt-take' version 1, found {found}"));
+        }
+        if self.people.is_empty() {
+            bad("people".into(), "expected at least one person, found none".into());
+        }
+        let mut spans: Vec<(String, usize, f32, f32)> = Vec::new();
+        let mut span = |place: String, person: usize, begin: f32, end: f32| spans.push((place, person, begin, end));
+        for (i, p) in self.plants.iter().enumerate() {
+            span(format!("plants[{i}]"), p.person, p.begin, p.end);
+        }
+        for (i, c) in self.contacts.iter().enumerate() {
+            span(format!("contacts[{i}].a"), c.a.person, c.begin, c.end);
+            span(format!("contacts[{i}].b"), c.b.person, c.begin, c.end);
+        }
+        for (i, p) in self.ports.iter().enumerate() {
+            span(format!("ports[{i}]"), p.person, p.time, p.time);
+        }
+        for (i, hold) in self.props.iter().flat_map(|p| &p.held).enumerate() {
+            span(format!("props: hold {i}"), hold.person, hold.begin, hold.end);
+        }
+        for patch in &self.patches {
+            if patch.roles.is_empty() {
+                bad(format!("patch {}", patch.name), "expected at least one role, found none".into());
+            }
+            for (i, role) in patch.roles.iter().enumerate() {
+                span(format!("patch {} roles[{i}]", patch.name), role.person, role.begin, role.end);
+                if patch.roles[..i].iter().any(|other| other.person == role.person) {
+                    bad(format!("patch {} roles[{i}]", patch.name), format!("person {} twice", role.person));
+                }
+            }
+            if let (Some([begin, end]), Some(role)) = (patch.core, patch.roles.first()) {
+                span(format!("patch {} core", patch.name), role.person, begin, end);
+            }
+        }
+        for (place, person, begin, end) in spans {
+            if person >= self.people.len() {
+                let problem = format!("expected a person below {}, found {person}", self.people.len());
+                bad(place, problem);
+            } else if !(begin >= 0.0 && end >= begin && end.is_finite()) {
+                bad(place, format!("expected times 0 <= begin <= end, found {begin} to {end}"));
+            }
+        }
+        problems
+    }
 }

@@ -1,8 +1,14 @@
 //! Motion patches: fragments of one or more people's motion with ports, contacts and labels, and the set of them.
 
+mod cut;
+#[cfg(test)]
+mod cut_tests;
 mod file;
+mod mirror;
 mod set;
 
 pub(crate) use file::{pack_rotation, unpack_rotation};
 
+pub use cut::{CutOptions, cut, cut_folder, load_take};
+pub use mirror::mirrored;
 pub use set::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};

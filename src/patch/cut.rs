@@ -1,0 +1,229 @@
+//! Cuts patch kinds out of takes, where their take files say: patches composed by hand, as many of the paper's are.
+//!
+//! Steps: take files are read; captures imported and retargeted, all people of a take with one scale; every entry
+//! of `patches` becomes a kind on its own clock and in its own frame; mirrored copies are added.
+
+use std::path::{Path, PathBuf};
+
+use glam::Vec2;
+
+use super::mirror::{add_mirrored, find_or_add};
+use super::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};
+use crate::motion::take::{TakeContact, TakeFile, TakePatch, TakeRole};
+use crate::motion::{FPS, Motion, Plant, import, retarget};
+use crate::{Error, Result};
+
+/// How takes are cut.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutOptions {
+    /// Folder that the takes' capture files are looked up in first; else they are relative to their take file.
+    pub captures: Option<PathBuf>,
+    /// Add the mirrored copy of every kind that is not labelled `symmetric`; default true.
+    pub mirror: bool,
+    /// A role begins and ends within this many seconds of a port of its person; default 0.02 (half a frame and a bit).
+    pub port_tolerance: f32,
+}
+
+impl Default for CutOptions {
+    fn default() -> Self {
+        Self { captures: None, mirror: true, port_tolerance: 0.02 }
+    }
+}
+
+/// Cuts the patches of all take files, in their order, into one set.
+///
+/// # Errors
+/// A take file or capture is bad (names the file and the line or field); a role outside its capture or without a
+/// port; two patches of one name.
+pub fn cut(takes: &[PathBuf], options: &CutOptions) -> Result<PatchSet> {
+    let mut set = PatchSet::default();
+    for path in takes {
+        let take = TakeFile::load(path)?;
+        let motions = load_take(path, &take, options)?;
+        for patch in &take.patches {
+            let cutter = Cutter { take: &take, motions: &motions, patch, options };
+            let kind = cutter.kind(&mut set.groups).map_err(|e| e.in_file(path))?;
+            if set.kinds.iter().any(|k| k.name == kind.name) {
+                let problem = "expected a new name, found a patch of this name before";
+                return Err(Error::invalid(path.display().to_string(), format!("patch {}", kind.name), problem));
+            }
+            set.kinds.push(kind);
+        }
+    }
+    if options.mirror {
+        add_mirrored(&mut set);
+    }
+    match set.validate().into_iter().next() {
+        Some(problem) => Err(problem),
+        None => Ok(set),
+    }
+}
+
+/// Cuts all take files (`*.take.json`) of a folder, sorted by name; captures are looked up in `captures` if given.
+///
+/// # Errors
+/// As [`cut`]; the folder cannot be read or has no take file.
+pub fn cut_folder(folder: &Path, captures: Option<&Path>) -> Result<PatchSet> {
+    let entries = std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))?;
+    let mut takes = Vec::new();
+    for entry in entries {
+        let path = entry.map_err(|e| Error::io(folder, e))?.path();
+        if path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(".take.json")) {
+            takes.push(path);
+        }
+    }
+    if takes.is_empty() {
+        let problem = "expected take files (*.take.json), found none";
+        return Err(Error::invalid(folder.display().to_string(), "folder", problem));
+    }
+    takes.sort();
+    cut(&takes, &CutOptions { captures: captures.map(Path::to_owned), ..Default::default() })
+}
+
+impl PatchSet {
+    /// The set cut from a folder of take files with their captures beside them. See [`cut_folder`].
+    ///
+    /// # Errors
+    /// As [`cut_folder`].
+    pub fn from_folder(folder: &Path) -> Result<Self> {
+        cut_folder(folder, None)
+    }
+}
+
+/// The motion of all people of a take, on its clock, with its foot plants: those of the take file where it has any,
+/// else as detected.
+///
+/// # Errors
+/// A capture is bad; names its file.
+pub fn load_take(path: &Path, take: &TakeFile, options: &CutOptions) -> Result<Vec<Motion>> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let locate = |file: &str| {
+        let elsewhere = options.captures.as_ref().map(|c| c.join(file)).filter(|p| p.exists());
+        elsewhere.unwrap_or_else(|| folder.join(file))
+    };
+    let clips = take.people.iter().map(|p| import::load(&locate(&p.file), &p.import)).collect::<Result<Vec<_>>>()?;
+    let mut motions = retarget::take(&clips).map_err(|e| match e {
+        Error::Invalid { origin, place, problem } => {
+            Error::invalid(path.display().to_string(), format!("capture {origin}: {place}"), problem)
+        }
+        other => other,
+    })?;
+    if !take.plants.is_empty() {
+        for (person, motion) in motions.iter_mut().enumerate() {
+            let last = motion.len() as u32 - 1;
+            let own = take.plants.iter().filter(|p| p.person == person);
+            let frames = own.map(|p| Plant { foot: p.foot, begin: frame(p.begin) as u32, end: frame(p.end) as u32 });
+            motion.plants = frames.map(|p| Plant { end: p.end.min(last), ..p }).filter(|p| p.begin < p.end).collect();
+            motion.plants.sort_by_key(|p| (p.begin, p.foot));
+        }
+    }
+    Ok(motions)
+}
+
+/// The frame nearest to a time in seconds.
+fn frame(time: f32) -> usize {
+    (time * FPS).round() as usize
+}
+
+/// What one patch is cut from.
+struct Cutter<'a> {
+    take: &'a TakeFile,
+    motions: &'a [Motion],
+    patch: &'a TakePatch,
+    options: &'a CutOptions,
+}
+
+impl Cutter<'_> {
+    fn kind(&self, groups: &mut Vec<PoseGroup>) -> Result<PatchKind> {
+        let start = self.patch.roles.iter().map(|r| frame(r.begin)).min().unwrap_or(0);
+        let fragments = self.patch.roles.iter().map(|role| self.fragment(role, start, groups));
+        let mut fragments = fragments.collect::<Result<Vec<Fragment>>>()?;
+        centre(&mut fragments);
+        let contacts = self.take.contacts.iter().filter_map(|c| self.contact(c, start, &fragments));
+        Ok(PatchKind {
+            name: self.patch.name.clone(),
+            labels: self.patch.labels.clone(),
+            contacts: contacts.collect(),
+            core: self.core(start, &fragments)?,
+            fragments,
+            mirrored: false,
+        })
+    }
+
+    fn bad(&self, problem: String) -> Error {
+        Error::invalid("take", format!("patch {}", self.patch.name), problem)
+    }
+
+    fn fragment(&self, role: &TakeRole, start: usize, groups: &mut Vec<PoseGroup>) -> Result<Fragment> {
+        let motion = &self.motions[role.person];
+        let (begin, end) = (frame(role.begin), frame(role.end));
+        if end >= motion.len() || begin >= end {
+            let seconds = (motion.len() - 1) as f32 / FPS;
+            let found = format!("{} s to {} s", role.begin, role.end);
+            let expected = format!("expected a begin before its end, within the capture's {seconds:.3} s");
+            return Err(self.bad(format!("person {}: {expected}, found {found}", role.person)));
+        }
+        Ok(Fragment {
+            motion: upright(motion.slice(begin, end)),
+            begin: (begin - start) as u32,
+            entry_group: find_or_add(groups, self.pose(role.person, role.begin)?),
+            exit_group: find_or_add(groups, self.pose(role.person, role.end)?),
+        })
+    }
+
+    /// The pose group of a person's port at a time.
+    fn pose(&self, person: usize, time: f32) -> Result<&str> {
+        let ports = self.take.ports.iter().filter(|p| p.person == person);
+        let nearest = ports.min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()));
+        match nearest {
+            Some(port) if (port.time - time).abs() <= self.options.port_tolerance => Ok(&port.pose),
+            other => {
+                let found = other.map_or("none at all".into(), |p| format!("the nearest at {} s", p.time));
+                Err(self.bad(format!("person {person}: expected a port at {time} s, found {found}")))
+            }
+        }
+    }
+
+    /// The part of a contact that lies in this patch.
+    fn contact(&self, c: &TakeContact, start: usize, fragments: &[Fragment]) -> Option<Contact> {
+        let role = |person: usize| self.patch.roles.iter().position(|r| r.person == person);
+        let (a, b) = (role(c.a.person)?, role(c.b.person)?);
+        let (mut begin, mut end) = (frame(c.begin), frame(c.end));
+        for f in [&fragments[a], &fragments[b]] {
+            begin = begin.max(start + f.begin as usize);
+            end = end.min(start + f.begin as usize + f.motion.len() - 1);
+        }
+        let touch = |role: usize, part| Touch { role: role as u32, part };
+        (begin <= end).then(|| Contact {
+            a: touch(a, c.a.part),
+            b: touch(b, c.b.part),
+            begin: (begin - start) as u32,
+            end: (end - start) as u32,
+        })
+    }
+
+    fn core(&self, start: usize, fragments: &[Fragment]) -> Result<Option<(u32, u32)>> {
+        let Some([begin, end]) = self.patch.core else { return Ok(None) };
+        let last = fragments.iter().map(|f| f.begin as usize + f.motion.len() - 1).max().unwrap_or(0);
+        if frame(begin) < start || frame(end) > start + last {
+            let span = format!("{:.3} s to {:.3} s", start as f32 / FPS, (start + last) as f32 / FPS);
+            return Err(self.bad(format!("expected a core within {span}, found {begin} s to {end} s")));
+        }
+        Ok(Some(((frame(begin) - start) as u32, (frame(end) - start) as u32)))
+    }
+}
+
+/// The motion with its first heading within half a turn.
+fn upright(mut motion: Motion) -> Motion {
+    let first = motion.path.headings[0];
+    let turns = first - crate::geom::wrap_angle(first);
+    motion.path.headings.iter_mut().for_each(|h| *h -= turns);
+    motion
+}
+
+/// Moves the patch so that the mean of all path points is the origin.
+fn centre(fragments: &mut [Fragment]) {
+    let points = || fragments.iter().flat_map(|f| &f.motion.path.points);
+    let mean = points().sum::<Vec2>() / points().count().max(1) as f32;
+    fragments.iter_mut().flat_map(|f| &mut f.motion.path.points).for_each(|p| *p -= mean);
+}
