@@ -25,7 +25,7 @@ use crate::{Error, Result};
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 400;
 /// Failed tries in a row after which no further patch of several people is wished for.
-const ENRICH_PATIENCE: usize = 20_000;
+const ENRICH_PATIENCE: usize = 40_000;
 /// Largest share of the people's time in patches of several people that early rounds aim at.
 const BUSIEST: f32 = 0.7;
 /// Rounds of mending.
@@ -149,7 +149,7 @@ fn engine(
 /// The denser the crowd, the more people rather stand than walk.
 fn calm(scene: &Scene) -> f32 {
     let density = scene.characters as f32 / scene.region.area();
-    (1.25 - density).clamp(0.3, 1.0)
+    (1.8 - density).clamp(0.3, 1.3)
 }
 
 fn state(tracks: &Tracks, phase: Phase) -> Progress {

@@ -2,6 +2,7 @@
 //! around it are ripped up and bridged again, and so are those of the few who stand in the way; if one bridge fails
 //! everything is as before.
 
+use glam::Vec2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
@@ -16,7 +17,12 @@ const CAST_RADIUS: f32 = 2.6;
 /// How long before an entry players are looked for, ticks.
 const CAST_LEAD: i32 = 40;
 /// Shortest way to an entry and back from an exit, ticks; drawn from this range.
-const BRIDGE_TICKS: std::ops::Range<i32> = 18..75;
+const BRIDGE_TICKS: std::ops::Range<i32> = 15..50;
+/// How far from where somebody would be anyway a patch is put, metres and radians.
+const JITTER: f32 = 0.5;
+const JITTER_TURN: f32 = 0.8;
+/// Patches drawn to begin before this tick may as well have begun before the first.
+const EARLY_TICKS: i32 = 60;
 /// Longer windows than this are not ripped up, ticks.
 const LONGEST_BRIDGE: i32 = 150;
 /// Faster than this on average no one is asked to be somewhere, m/s.
@@ -55,47 +61,33 @@ pub(super) fn enrich(tracks: &mut Tracks, kind: u32, taste: Taste, rng: &mut Cha
     }
 }
 
-/// Chooses place, time and players. The first player's track leads exactly into the patch.
+/// Chooses place, time and players: somebody's way leads through one of the entries, others are near the rest.
 fn cast(tracks: &Tracks, kind: u32, rng: &mut ChaCha8Rng) -> Option<Vec<Part>> {
     let library = tracks.library;
     let roles = library.roles_of(kind);
     let lead_role = rng.random_range(roles.clone());
     let lead_track = rng.random_range(0..tracks.tracks.len());
     let lead = &library.roles[lead_role as usize];
-    let horizon = tracks.domain.horizon;
-    let joints: Vec<usize> = (0..tracks.tracks[lead_track].len())
-        .filter(|&i| {
-            let port = tracks.port(lead_track, i);
-            port.group == lead.entry_group && port.tick > 15 - lead.ticks && port.tick < horizon - 15
-        })
-        .collect();
-    if joints.is_empty() {
-        return None;
-    }
-    let joint = joints[rng.random_range(0..joints.len())];
-    let port = tracks.port(lead_track, joint);
-    let world_from_patch = port.at.then(lead.entry.inverse());
-    let clock = port.tick - lead.begin;
+    let (horizon, tick) = (tracks.domain.horizon, rng.random_range(0..tracks.domain.horizon - 15));
+    // Some patches are met half-way through at the first frame.
+    let tick = if tick < EARLY_TICKS { tick - rng.random_range(0..lead.ticks) } else { tick };
+    let on_the_way = tracks.state_at(lead_track, tick.max(0));
+    let aside = Vec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * JITTER;
+    let at = on_the_way.then(Ground::new(aside, rng.random_range(-JITTER_TURN..JITTER_TURN)));
+    let world_from_patch = at.then(lead.entry.inverse());
+    let clock = tick - lead.begin;
 
     let mut parts: Vec<Part> = Vec::with_capacity(roles.len());
     let mut near = Vec::new();
     for role in roles {
-        let (mut entry, exit) = ports(tracks, role, world_from_patch, clock);
-        if role == lead_role {
-            // Not but for rounding: the very same numbers.
-            entry = port;
-        }
+        let (entry, exit) = ports(tracks, role, world_from_patch, clock);
         let room = |p: &Port| p.tick < 0 || p.tick > horizon || tracks.domain.holds(p.at.position, WALL_ROOM);
         if !room(&entry) || !room(&exit) {
             return None;
         }
-        let (track, keep_before) = if role == lead_role {
-            (lead_track, joint)
-        } else {
-            let taken = |t: TrackId| t == lead_track || parts.iter().any(|p| p.track == t);
-            let track = player(tracks, &entry, taken, &mut near, rng)?;
-            (track, rip_from(tracks, track, &entry, rng)?)
-        };
+        let taken = |t: TrackId| t == lead_track || parts.iter().any(|p| p.track == t);
+        let track = if role == lead_role { lead_track } else { player(tracks, &entry, taken, &mut near, rng)? };
+        let keep_before = rip_from(tracks, track, &entry, rng)?;
         let keep_after = rip_to(tracks, track, keep_before, &entry, &exit, rng)?;
         parts.push(Part { track, role, entry, exit, keep_before, keep_after });
     }
@@ -284,7 +276,7 @@ fn lead_in(
     undo: &mut Undo,
 ) -> Option<Vec<PieceId>> {
     let from = tracks.port(part.track, part.keep_before);
-    if part.entry.tick <= 0 || from == part.entry {
+    if part.entry.tick <= 0 {
         return Some(vec![]);
     }
     let chain = if part.keep_before == 0 {

@@ -104,6 +104,12 @@ impl Piece {
         self.bodies.get(usize::try_from(tick - self.first_tick()).ok()?).map(|b| b.position)
     }
 
+    /// Place and heading at a tick the piece occupies.
+    pub fn state(&self, tick: i32) -> Ground {
+        let body = &self.bodies[(tick - self.first_tick()) as usize];
+        Ground::new(body.position, body.turn.angle())
+    }
+
     /// Ticks inside the domain's time.
     pub fn ticks_inside(&self) -> usize {
         self.bodies.len()

@@ -7,6 +7,7 @@ use super::bridge::{Bridge, Goal, NO_INSTANCE, Port, Taste, View};
 use super::domain::Domain;
 use super::library::Library;
 use super::occupancy::{Occupancy, Piece, PieceId};
+use crate::geom::Ground;
 
 /// Index of a person.
 pub(super) type TrackId = usize;
@@ -211,6 +212,11 @@ impl<'a> Tracks<'a> {
     /// Index of the piece a track is in at `tick`.
     pub fn index_at(&self, track: TrackId, tick: i32) -> usize {
         self.tracks[track].partition_point(|&id| self.piece(id).end <= tick)
+    }
+
+    /// Place and heading of a person at a tick within the domain's time.
+    pub fn state_at(&self, track: TrackId, tick: i32) -> Ground {
+        self.piece(self.tracks[track][self.index_at(track, tick)]).state(tick)
     }
 
     /// Share of the people's time inside patches of two or more.

@@ -52,7 +52,7 @@ fn meeting(name: &str, stand_frames: usize, turn: f32) -> PatchKind {
                 0.0
             }
         };
-        let mut m = motion(total, Ground::new(Vec2::new(0.05 * side, -side * 1.5), heading), speed, 0.0);
+        let mut m = motion(total, Ground::new(Vec2::new(0.05 * side, -side * 2.2), heading), speed, 0.0);
         for f in 0..total {
             let late = ((f as f32 / total as f32 - b) / (1.0 - b)).max(0.0);
             m.path.headings[f] += turn * late;
