@@ -1,6 +1,6 @@
 //! Mirrored copies: left and right swapped, x to -x. They double a patch set.
 
-use glam::{Quat, Vec2};
+use glam::{Quat, Vec2, Vec3};
 
 use super::skeleton::{JOINT_COUNT, joint};
 use super::{BodyPart, Foot, Motion, MotionPath, Plant};
@@ -24,6 +24,23 @@ pub fn motion(motion: &Motion) -> Motion {
 fn rotation(q: Quat) -> Quat {
     Quat::from_xyzw(q.x, -q.y, -q.z, q.w)
 }
+
+/// The points of a body (see [`super::pose::points`], or a window of those) seen in that mirror, in the body's order.
+pub fn cloud(points: &[Vec3]) -> Vec<Vec3> {
+    let per_frame = JOINT_COUNT + TIPS.len();
+    let twin = |k: usize| match k.checked_sub(JOINT_COUNT) {
+        None => joint::mirror(k),
+        Some(tip) => {
+            let other = joint::mirror(TIPS[tip]);
+            JOINT_COUNT + TIPS.iter().position(|&t| t == other).expect("tips come in pairs")
+        }
+    };
+    let at = |i: usize| points[i / per_frame * per_frame + twin(i % per_frame)] * Vec3::new(-1.0, 1.0, 1.0);
+    (0..points.len()).map(at).collect()
+}
+
+/// The canonical joints that have tips, in order.
+const TIPS: [usize; 5] = [joint::LEFT_TOE, joint::RIGHT_TOE, joint::HEAD, joint::LEFT_HAND, joint::RIGHT_HAND];
 
 /// The other foot.
 pub fn foot(foot: Foot) -> Foot {
@@ -53,7 +70,6 @@ pub fn group(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
 
     #[test]
     fn mirrored_joints_are_the_mirrored_points_and_twice_is_once() {
@@ -77,6 +93,11 @@ mod tests {
             }
         }
         assert_eq!(motion(&mirrored), original);
+        for frame in 0..2 {
+            let (points, expected) =
+                (cloud(&super::super::pose::points(&original, frame)), super::super::pose::points(&mirrored, frame));
+            assert!(points.iter().zip(&expected).all(|(p, q)| p.distance(*q) < 1e-5));
+        }
     }
 
     #[test]

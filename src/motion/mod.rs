@@ -3,7 +3,8 @@
 mod body;
 pub mod bvh;
 mod clip;
-//pub mod gait;
+pub mod contacts;
+pub mod gait;
 pub mod ik;
 pub mod import;
 pub mod mirror;

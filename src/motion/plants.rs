@@ -34,6 +34,11 @@ pub fn detect(motion: &Motion, options: &PlantOptions) -> Vec<Plant> {
     plants
 }
 
+/// Whether a foot is planted at a frame.
+pub fn is_planted(motion: &Motion, foot: Foot, frame: usize) -> bool {
+    motion.plants.iter().any(|p| p.foot == foot && (p.begin as usize..=p.end as usize).contains(&frame))
+}
+
 /// Global positions of one joint of a motion at every frame.
 pub fn trajectory(motion: &Motion, of: usize) -> Vec<Vec3> {
     let mut globals = Vec::with_capacity(JOINT_COUNT);

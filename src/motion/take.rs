@@ -79,7 +79,7 @@ pub struct TakePort {
     pub person: usize,
     /// When, in seconds of the take.
     pub time: f32,
-    /// Name of the pose group, e.g. `stand`, `walk_left` (left foot strikes), `walk_right`.
+    /// Name of the pose group, e.g. `stand`, `walk_left` (mid-stance on the left foot), `walk_right`.
     pub pose: String,
 }
 

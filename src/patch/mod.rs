@@ -1,10 +1,12 @@
 //! Motion patches: fragments of one or more people's motion with ports, contacts and labels, and the set of them.
 
+pub mod boundary;
 mod cut;
 #[cfg(test)]
 mod cut_tests;
 mod file;
 mod mirror;
+pub mod propose;
 mod set;
 
 pub(crate) use file::{pack_rotation, unpack_rotation};

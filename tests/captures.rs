@@ -1,0 +1,216 @@
+//! Real captures (CMU's database; not part of the project): imported, retargeted, cut by `examples/cmu`.
+//!
+//! The folder is `../shared/mocap`, or what `CROWDQUILT_MOCAP` says. Without it these tests say so and pass.
+
+use std::path::{Path, PathBuf};
+
+use crowdquilt::motion::take::ImportOptions;
+use crowdquilt::motion::{Clip, Foot, Motion, contacts, gait, import, joint, plants, retarget};
+use crowdquilt::patch::{PatchSet, cut_folder};
+
+/// The folder of captures, if it is there.
+fn mocap() -> Option<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = std::env::var_os("CROWDQUILT_MOCAP").map_or_else(|| root.join("../shared/mocap"), PathBuf::from);
+    if folder.join("index.csv").is_file() {
+        return Some(folder);
+    }
+    eprintln!("skipped: no captures at {} (set CROWDQUILT_MOCAP to a folder with index.csv)", folder.display());
+    None
+}
+
+/// One row of the index.
+struct Row {
+    take: String,
+    file: PathBuf,
+    frames: usize,
+    import: ImportOptions,
+}
+
+fn rows(folder: &Path) -> Vec<Row> {
+    let text = std::fs::read_to_string(folder.join("index.csv")).unwrap();
+    let mut lines = text.lines().map(cells);
+    let header = lines.next().unwrap();
+    let column = |name: &str| header.iter().position(|h| h == name).unwrap();
+    let rows = lines.map(|row| Row {
+        take: row[column("take")].clone(),
+        file: folder.join(&row[column("file")]),
+        frames: row[column("frames")].parse().unwrap(),
+        import: ImportOptions {
+            metres_per_unit: row[column("metres_per_unit")].parse().ok(),
+            fps: row[column("fps_true")].parse().ok(),
+            drop_first_frames: row[column("drop_first_frames")].parse().unwrap(),
+            restore_thorax: ["cmu-mb", "cmu-max"].iter().any(|f| row[column("skeleton")].starts_with(f)),
+        },
+    });
+    rows.collect()
+}
+
+fn cells(line: &str) -> Vec<String> {
+    let (mut cells, mut quoted) = (vec![String::new()], false);
+    for c in line.chars() {
+        match c {
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells.push(String::new()),
+            c => cells.last_mut().unwrap().push(c),
+        }
+    }
+    cells
+}
+
+fn load(folder: &Path, take: &str) -> Clip {
+    let row = rows(folder).into_iter().find(|r| r.take == take).unwrap();
+    import::load(&row.file, &row.import).unwrap()
+}
+
+fn percentile(mut values: Vec<f32>, percent: usize) -> f32 {
+    values.sort_by(f32::total_cmp);
+    values[(values.len() - 1) * percent / 100]
+}
+
+/// Heights of the balls of the feet while planted.
+fn planted_heights(motion: &Motion) -> Vec<f32> {
+    let ball = |foot| if foot == Foot::Left { joint::LEFT_TOE } else { joint::RIGHT_TOE };
+    let heights = |p: &crowdquilt::motion::Plant| {
+        let points = plants::trajectory(motion, ball(p.foot));
+        points[p.begin as usize..=p.end as usize].iter().map(|p| p.y).collect::<Vec<_>>()
+    };
+    motion.plants.iter().flat_map(heights).collect()
+}
+
+#[test]
+fn every_capture_of_the_index_imports_by_its_row() {
+    let Some(folder) = mocap() else { return };
+    for row in rows(&folder) {
+        let clip = import::load(&row.file, &row.import).unwrap();
+        assert_eq!(clip.frames(), row.frames - row.import.drop_first_frames as usize, "{}", row.take);
+        // From the lowest joint to the highest bone tip, in the tallest posture; arms reach above heads in dances.
+        let height = import::standing_height(&clip);
+        assert!((1.35..2.0).contains(&height), "{}: {height} m", row.take);
+        let motion = retarget::to_canonical(&clip).unwrap();
+        assert!(motion.rotations.iter().all(|q| q.is_normalized()), "{}", row.take);
+    }
+}
+
+#[test]
+fn the_unit_is_guessed_right_for_files_in_common_units() {
+    let Some(folder) = mocap() else { return };
+    for row in rows(&folder).into_iter().filter(|r| r.import.metres_per_unit.unwrap() < 1.0) {
+        let guessed = import::load(&row.file, &ImportOptions { metres_per_unit: None, ..row.import.clone() }).unwrap();
+        let known = import::load(&row.file, &row.import).unwrap();
+        let ratio = guessed.skeleton.joints[2].offset.length() / known.skeleton.joints[2].offset.length();
+        assert!((ratio - 1.0).abs() < 1e-3, "{}: off by {ratio}", row.take);
+    }
+}
+
+#[test]
+fn planted_feet_stand_on_the_floor() {
+    let Some(folder) = mocap() else { return };
+    for row in rows(&folder) {
+        let motion = retarget::to_canonical(&import::load(&row.file, &row.import).unwrap()).unwrap();
+        let heights = planted_heights(&motion);
+        if heights.len() < 20 {
+            continue; // runs and leaps hardly plant a foot
+        }
+        let middle = percentile(heights, 50);
+        assert!((0.01..0.05).contains(&middle), "{}: planted balls at {middle} m", row.take);
+    }
+}
+
+#[test]
+fn knees_bend_forwards() {
+    let Some(folder) = mocap() else { return };
+    for take in ["02_01", "09_12", "18_01", "19_01", "60_03", "61_03", "16_11", "26_01"] {
+        let motion = retarget::to_canonical(&load(&folder, take)).unwrap();
+        let mut globals = Vec::new();
+        let (mut bent, mut backwards) = (0, 0);
+        for frame in 0..motion.len() {
+            motion.globals(frame, &mut globals);
+            for [hip, knee, ankle, toe] in [[1, 2, 3, 4], [5, 6, 7, 8]] {
+                let at = |j: usize| globals[j].0;
+                let side = (at(knee) - at(hip)).reject_from(at(ankle) - at(hip));
+                if side.length() > 0.03 {
+                    bent += 1;
+                    backwards += usize::from(side.dot(at(toe) - at(ankle)) < 0.0);
+                }
+            }
+        }
+        assert!(bent > 50 && backwards * 50 < bent, "{take}: {backwards} of {bent} knees bend backwards");
+    }
+}
+
+#[test]
+fn a_walk_has_the_gait_of_a_walk() {
+    let Some(folder) = mocap() else { return };
+    let motion = retarget::to_canonical(&load(&folder, "02_01")).unwrap();
+    let moments = gait::moments(&motion, &gait::GaitOptions::default());
+    let phases: Vec<gait::Phase> = moments.iter().map(|m| m.phase).collect();
+    assert!(moments.len() >= 4, "{moments:?}");
+    assert!(phases.windows(2).all(|p| p[0] != p[1]), "left and right alternate: {moments:?}");
+    for pair in moments.windows(3) {
+        let stride = (pair[2].frame - pair[0].frame) as f32 / 30.0;
+        assert!((0.9..1.3).contains(&stride), "stride of {stride} s");
+    }
+    let path = &motion.path;
+    let speed = path.points[0].distance(path.points[path.len() - 1]) / ((path.len() - 1) as f32 / 30.0);
+    assert!((1.0..1.5).contains(&speed), "{speed} m/s");
+    // Someone who walks straight ahead looks where they go.
+    for frame in 10..path.len() - 10 {
+        let way = path.points[frame + 10] - path.points[frame - 10];
+        let off = crowdquilt::geom::wrap_angle(way.x.atan2(way.y) - path.headings[frame]);
+        assert!(off.abs() < 0.35, "frame {frame}: {off} rad");
+    }
+}
+
+#[test]
+fn hands_meet_in_the_handshake() {
+    let Some(folder) = mocap() else { return };
+    let pair = retarget::take(&[load(&folder, "18_01"), load(&folder, "19_01")]).unwrap();
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    let gaps: Vec<f32> = (0..pair[0].len())
+        .map(|frame| {
+            pair[0].globals(frame, &mut a);
+            pair[1].globals(frame, &mut b);
+            contacts::palm(&a, joint::RIGHT_HAND).distance(contacts::palm(&b, joint::RIGHT_HAND))
+        })
+        .collect();
+    let held = gaps.iter().filter(|&&g| g < 0.1).count();
+    assert!(held >= 20, "right palms within 10 cm for {held} frames only: {gaps:?}");
+    assert!(gaps[0] > 0.5, "they start apart: {}", gaps[0]);
+    let found = contacts::detect(&pair, &contacts::ContactOptions::default());
+    assert_eq!(found.len(), 1, "{found:?}");
+}
+
+#[test]
+fn the_patches_of_the_examples_close_on_each_other() {
+    let Some(folder) = mocap() else { return };
+    let takes = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cmu");
+    let set = cut_folder(&takes, Some(&folder)).unwrap();
+    assert!(set.validate().is_empty());
+    let shared = set.kinds.iter().filter(|k| k.people() > 1 && !k.contacts.is_empty()).count();
+    assert!(set.kinds.len() >= 60 && shared >= 6, "{} kinds, {shared} shared", set.kinds.len());
+    // From every group one can get to every other by single-person kinds, in few steps.
+    let n = set.groups.len();
+    for from in 0..n {
+        let mut reached = vec![false; n];
+        reached[from] = true;
+        for _ in 0..3 {
+            for (entry, exit) in single_kinds(&set) {
+                reached[exit] |= reached[entry];
+            }
+        }
+        assert!(reached.iter().all(|&r| r), "from {} not everything is reached", set.groups[from].name);
+    }
+    // Both ways round: steering.
+    let turn = |k: &crowdquilt::patch::PatchKind| {
+        let h = &k.fragments[0].motion.path.headings;
+        h[h.len() - 1] - h[0]
+    };
+    let walks = || set.kinds.iter().filter(|k| k.people() == 1 && k.labels.iter().any(|l| l == "turn"));
+    assert!(walks().any(|k| turn(k) > 0.5) && walks().any(|k| turn(k) < -0.5));
+}
+
+fn single_kinds(set: &PatchSet) -> Vec<(usize, usize)> {
+    let alone = set.kinds.iter().filter(|k| k.people() == 1);
+    alone.map(|k| (k.fragments[0].entry_group as usize, k.fragments[0].exit_group as usize)).collect()
+}
