@@ -15,7 +15,10 @@ fn main() -> crowdquilt::Result<()> {
     let set = patch::cut_folder(Path::new(takes), captures.map(Path::new))?;
     // 2. Tile the demo's scene.
     let options = Options { seed: args.get(3).and_then(|s| s.parse().ok()).unwrap_or(1), ..Options::default() };
-    let outcome = tile(&Scene::demo(), &set, &options, &mut |_| true)?;
+    let outcome = tile(&Scene::demo(), &set, &options, &mut |p| {
+        eprint!("\r{:?}: {} patches, {} characters, {:.1} % together, {:.1} s ", p.phase, p.patches, p.characters, p.multi_person_share * 100.0, p.secs);
+        true
+    })?;
     println!("{:?} in {:.2} s", outcome.status, outcome.solve_secs);
     // 3. Check the result.
     println!("{:?}", check::summary(&outcome.crowd));

@@ -2,35 +2,32 @@
 
 use glam::{Quat, Vec3};
 
+/// How far the pole pulls the knee of a nearly straight limb, metres: bent further than this, the limb's own bend rules.
+const POLE_PULL: f32 = 0.04;
+
 /// Bends and swings a two-bone limb so that its end reaches `target`, or points at it where it is out of reach.
 ///
-/// `hip`, `knee`, `end` are the limb's present global positions (m). The limb keeps its bend plane;
-/// `pole` (a global direction) says where the knee points if the limb is straight. `stretch` in (0, 1] is the
-/// largest part of the limb's length that may be used, so that knees never lock.
+/// `hip`, `knee`, `end` are the limb's present global positions (m). The limb keeps its bend plane; `pole` (a global
+/// direction) says where the knee points, the more so the straighter the limb is, so that the knee of a limb that
+/// straightens and bends again does not flip. `stretch` in (0, 1] is the largest part of the limb's length that may be
+/// used, so that knees never lock.
 ///
 /// Returns the global rotations to apply, first to the upper bone and all below it, then to the lower bone
 /// (`upper_new = swing * upper`, `lower_new = swing * bend * lower`), and the end's new position.
 pub fn two_bone(hip: Vec3, knee: Vec3, end: Vec3, target: Vec3, pole: Vec3, stretch: f32) -> (Quat, Quat, Vec3) {
     let (upper, lower) = ((knee - hip).length(), (end - knee).length());
     let reach = (target - hip).length().clamp((upper - lower).abs() + 1e-4, (upper + lower) * stretch);
-    let axis = bend_axis(hip, knee, end, pole);
-    let inner = |distance: f32| {
-        ((upper * upper + lower * lower - distance * distance) / (2.0 * upper * lower)).clamp(-1.0, 1.0).acos()
-    };
-    // The inner knee angle grows with the distance; turning about the bend axis closes it.
-    let bend = Quat::from_axis_angle(axis, inner((end - hip).length()) - inner(reach));
-    let bent_end = knee + bend * (end - knee);
-    let swing = rotation_between(bent_end - hip, target - hip);
-    (swing, bend, hip + swing * (bent_end - hip))
-}
-
-fn bend_axis(hip: Vec3, knee: Vec3, end: Vec3, pole: Vec3) -> Vec3 {
-    let bent = (knee - hip).cross(end - knee);
-    if bent.length() > 1e-3 * (knee - hip).length() * (end - knee).length() {
-        return bent.normalize();
-    }
-    // Straight: the knee is to move towards the pole, so the lower bone turns away from it.
-    (pole.cross(end - hip)).try_normalize().unwrap_or_else(|| (end - hip).any_orthonormal_vector())
+    let along = (end - hip).normalize_or(Vec3::NEG_Y);
+    let toward = (target - hip).normalize_or(along);
+    let bulge = (knee - hip).reject_from_normalized(along) + pole.reject_from_normalized(along) * POLE_PULL;
+    let side = (Quat::from_rotation_arc(along, toward) * bulge).reject_from_normalized(toward);
+    let side = side.try_normalize().unwrap_or_else(|| toward.any_orthonormal_vector());
+    let foot = (upper * upper - lower * lower + reach * reach) / (2.0 * reach);
+    let new_knee = hip + toward * foot + side * (upper * upper - foot * foot).max(0.0).sqrt();
+    let new_end = hip + toward * reach;
+    let swing = rotation_between(knee - hip, new_knee - hip);
+    let bend = swing.inverse() * rotation_between(swing * (end - knee), new_end - new_knee) * swing;
+    (swing, bend, new_end)
 }
 
 fn rotation_between(from: Vec3, to: Vec3) -> Quat {

@@ -1,8 +1,9 @@
 //! Carrying bodies along deformed paths, and blending them at stitches.
 //!
-//! At a stitch the two captures differ a little in pose, height and speed. Half of each difference, in value and in
-//! rate, is taken by either side and faded out by a cubic over a short window, so that the result is continuous and
-//! smooth (C1) and only the neighbourhood of the stitch changes.
+//! At a stitch the two captures differ a little in pose, height and speed. Either side takes a share of each
+//! difference, in value and in rate, and fades it out by a cubic over a short window, so that the result is continuous
+//! and smooth (C1) and only the neighbourhood of the stitch changes. People who act alone take it all where they meet
+//! a patch of several: what people do together stays exactly as captured.
 
 use glam::{Quat, Vec3};
 
@@ -10,8 +11,11 @@ use super::{Body, Segment};
 use crate::geom::Ground;
 use crate::motion::JOINT_COUNT;
 
-/// Frames over which a difference is faded on either side of a stitch.
+/// Frames over which a difference is faded on either side of a stitch, and where one side takes all of it.
 const BLEND_FRAMES: i32 = 10;
+const LONG_BLEND_FRAMES: i32 = 16;
+/// Most that the hips leave the path, metres.
+const MAX_SHIFT: f32 = 0.045;
 /// Numbers that describe a pose besides the joints: hips x, y, z.
 type Offset = [Vec3; JOINT_COUNT + 1];
 
@@ -54,7 +58,8 @@ impl Pose {
             return;
         }
         let offset = |i: usize| stitch.difference[i] * value + stitch.rate[i] * rate;
-        self.root += offset(JOINT_COUNT);
+        // Where speeds differ so much that the hips would leave the path, nearness to the path goes first.
+        self.root += offset(JOINT_COUNT).clamp_length_max(MAX_SHIFT);
         for (i, q) in self.rotations.iter_mut().enumerate() {
             *q = (Quat::from_scaled_axis(offset(i)) * *q).normalize();
         }
@@ -62,7 +67,7 @@ impl Pose {
 }
 
 fn pose_at(segment: &Segment, source_frame: f32) -> Pose {
-    let motion = &segment.source.motion;
+    let motion = segment.motion();
     let i = (source_frame as usize).min(motion.len() - 2);
     let t = source_frame - i as f32;
     let at = ground_at(segment, i, t);
@@ -83,6 +88,8 @@ fn ground_at(segment: &Segment, i: usize, t: f32) -> Ground {
 /// The differences between the two sides of a stitch: entry minus exit, in value and per frame.
 struct Stitch {
     frame: i32,
+    /// What the side before takes, 0 to 1; the side after takes the rest.
+    share_before: f32,
     window_before: i32,
     window_after: i32,
     difference: Offset,
@@ -91,15 +98,24 @@ struct Stitch {
 
 impl Stitch {
     fn between(before: &Segment, after: &Segment) -> Self {
-        let last = (before.source.motion.len() - 1) as f32;
+        let last = (before.motion().len() - 1) as f32;
         let (exit, entry) = (pose_at(before, last), pose_at(after, 0.0));
         let exit_rate = rate(&pose_at(before, last - 1.0), &exit, before.rate());
         let entry_rate = rate(&entry, &pose_at(after, 1.0), after.rate());
-        let half = |s: &Segment| BLEND_FRAMES.min((s.placed.end - s.placed.begin) / 2).max(1);
+        let share_before = match (before.kind.people() > 1, after.kind.people() > 1) {
+            (true, false) => 0.0,
+            (false, true) => 1.0,
+            _ => 0.5,
+        };
+        let window = |s: &Segment, share: f32| {
+            let (frames, ticks) = (if share == 1.0 { LONG_BLEND_FRAMES } else { BLEND_FRAMES }, s.placed.end - s.placed.begin);
+            frames.min((ticks as f32 * (0.5 + 0.3 * (share - 0.5))) as i32).max(1)
+        };
         Self {
             frame: after.placed.begin,
-            window_before: half(before),
-            window_after: half(after),
+            share_before,
+            window_before: window(before, share_before),
+            window_after: window(after, 1.0 - share_before),
             difference: difference(&exit, &entry),
             rate: std::array::from_fn(|i| entry_rate[i] - exit_rate[i]),
         }
@@ -107,20 +123,20 @@ impl Stitch {
 
     /// Weights of difference and rate at a frame before the stitch.
     fn before(&self, frame: i32) -> (f32, f32) {
-        let w = self.window_before as f32;
+        let (w, share) = (self.window_before as f32, self.share_before);
         let s = 1.0 + (frame - self.frame) as f32 / w;
-        if s <= 0.0 { (0.0, 0.0) } else { (0.5 * s * s * (3.0 - 2.0 * s), 0.5 * w * s * s * (s - 1.0)) }
+        if s <= 0.0 { (0.0, 0.0) } else { (share * s * s * (3.0 - 2.0 * s), share * w * s * s * (s - 1.0)) }
     }
 
     /// Weights of difference and rate at a frame after the stitch.
     fn after(&self, frame: i32) -> (f32, f32) {
-        let w = self.window_after as f32;
+        let (w, share) = (self.window_after as f32, 1.0 - self.share_before);
         let s = (frame - self.frame) as f32 / w;
         if s >= 1.0 {
             return (0.0, 0.0);
         }
         let left = 1.0 - s;
-        (-0.5 * left * left * (1.0 + 2.0 * s), -0.5 * w * s * left * left)
+        (-share * left * left * (1.0 + 2.0 * s), -share * w * s * left * left)
     }
 }
 

@@ -59,7 +59,7 @@ pub(super) fn lock(segments: &[Segment], body: &mut Body) {
 fn locks(segments: &[Segment], foot: Foot, begin: i32, frames: i32) -> Vec<Lock> {
     let mut locks: Vec<Lock> = Vec::new();
     for s in segments {
-        for p in s.source.motion.plants.iter().filter(|p| p.foot == foot) {
+        for p in s.motion().plants.iter().filter(|p| p.foot == foot) {
             let at = |source: u32| s.placed.begin as f32 + source as f32 / s.rate() - begin as f32;
             let lock = Lock { begin: at(p.begin).ceil() as i32, end: at(p.end).floor() as i32 };
             let lock = Lock { begin: lock.begin.max(0), end: lock.end.min(frames - 1) };
@@ -157,7 +157,7 @@ fn leg_length(ankle: usize) -> f32 {
 /// Moves an ankle by `shift`, the foot keeping its orientation.
 fn move_ankle(pose: &mut [Quat], globals: &[(Vec3, Quat)], ankle: usize, shift: Vec3) {
     let (up, knee) = (ankle - 2, ankle - 1);
-    let pole = globals[0].1 * Vec3::Z;
+    let pole = globals[up].1 * Vec3::Z;
     let target = globals[ankle].0 + shift;
     let (swing, bend, _) = two_bone(globals[up].0, globals[knee].0, globals[ankle].0, target, pole, 0.9999);
     let (up_rotation, knee_rotation) = (swing * globals[up].1, swing * bend * globals[knee].1);

@@ -6,29 +6,35 @@ mod feet;
 
 use glam::{Quat, Vec3};
 
-use crate::patch::Fragment;
+use crate::motion::Motion;
+use crate::patch::PatchKind;
 use crate::stage::FragmentUse;
 
 /// A fragment in a person's life: what was captured, and how it is placed and timed.
 #[derive(Clone, Copy)]
 pub struct Segment<'a> {
-    /// The capture.
-    pub source: &'a Fragment,
+    /// The patch kind it is a fragment of.
+    pub kind: &'a PatchKind,
     /// The deformed path and the frames from entry to exit.
     pub placed: &'a FragmentUse,
 }
 
-impl Segment<'_> {
+impl<'a> Segment<'a> {
+    /// The capture.
+    pub fn motion(&self) -> &'a Motion {
+        &self.kind.fragments[self.placed.role as usize].motion
+    }
+
     /// Source frame (with fraction) shown at a frame of the crowd.
     pub fn source_frame(&self, frame: i32) -> f32 {
-        let last = self.source.motion.len() - 1;
+        let last = self.motion().len() - 1;
         let at = (frame - self.placed.begin) as f32 * last as f32 / (self.placed.end - self.placed.begin) as f32;
         at.clamp(0.0, last as f32)
     }
 
     /// Source frames per frame of the crowd.
     pub fn rate(&self) -> f32 {
-        (self.source.motion.len() - 1) as f32 / (self.placed.end - self.placed.begin) as f32
+        (self.motion().len() - 1) as f32 / (self.placed.end - self.placed.begin) as f32
     }
 }
 

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use super::Scene;
 use super::tracks::{TrackId, Tracks};
-use crate::patch::Fragment;
+use crate::patch::PatchKind;
 use crate::refine::Body;
 use crate::stage::{Character, Crowd, DomainInfo, FragmentUse, Instance};
 
-/// The fragments of a person that are seen within the domain's time, in order: capture and placement.
-pub(super) fn segments_of<'a>(tracks: &Tracks<'a>, track: TrackId) -> Vec<(&'a Fragment, FragmentUse)> {
+/// The fragments of a person that are seen within the domain's time, in order: kind and placement.
+pub(super) fn segments_of<'a>(tracks: &Tracks<'a>, track: TrackId) -> Vec<(&'a PatchKind, FragmentUse)> {
     let library = tracks.library;
     let seen = tracks.tracks[track]
         .iter()
@@ -17,7 +17,6 @@ pub(super) fn segments_of<'a>(tracks: &Tracks<'a>, track: TrackId) -> Vec<(&'a F
         .filter(|p| p.end > 0 && p.begin < tracks.domain.horizon);
     seen.map(|piece| {
         let role = &library.roles[piece.role as usize];
-        let source = &library.set.kinds[role.kind as usize].fragments[role.role as usize];
         let placed = FragmentUse {
             instance: piece.instance,
             role: role.role,
@@ -26,7 +25,7 @@ pub(super) fn segments_of<'a>(tracks: &Tracks<'a>, track: TrackId) -> Vec<(&'a F
             points: piece.path.points.clone(),
             headings: piece.path.headings.clone(),
         };
-        (source, placed)
+        (&library.set.kinds[role.kind as usize], placed)
     })
     .collect()
 }

@@ -13,7 +13,7 @@ use super::bridge::Taste;
 use super::tracks::{TrackId, Tracks, Undo, Window};
 use crate::geom::Capsule;
 use crate::motion::{JOINT_COUNT, body_capsules, canonical};
-use crate::refine::{Body, refine};
+use crate::refine::{Body, Segment, refine};
 
 /// Bodies whose hips are further apart than this never touch, metres.
 const TOUCHING_HIPS: f32 = 2.2;
@@ -43,7 +43,7 @@ pub(super) fn bodies(tracks: &Tracks) -> Vec<Body> {
         .map(|t| {
             let uses = segments_of(tracks, t);
             let segments: Vec<_> =
-                uses.iter().map(|(source, placed)| crate::refine::Segment { source, placed }).collect();
+                uses.iter().map(|(kind, placed)| Segment { kind, placed }).collect();
             refine(&segments, last_frame)
         })
         .collect()
