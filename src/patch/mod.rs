@@ -8,8 +8,10 @@ mod file;
 mod mirror;
 pub mod propose;
 mod set;
+mod speed;
 
 pub(crate) use file::{pack_rotation, unpack_rotation};
+pub(crate) use speed::{fastest_turns, turn_between};
 
 pub use cut::{CutOptions, cut, cut_folder, load_take};
 pub use mirror::mirrored;

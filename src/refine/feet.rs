@@ -12,6 +12,8 @@ use crate::motion::{Foot, JOINT_COUNT, canonical};
 const LEG_STRETCH: f32 = 0.995;
 /// Most that hips are lowered, metres.
 const MAX_LOWERING: f32 = 0.10;
+/// A foot that falls short of its place by more than this is told, metres.
+const MAX_MISS: f32 = 0.003;
 /// Frames over which hips come down and rise again.
 const LOWERING_FRAMES: usize = 5;
 /// A swing this long (frames) forgets the plant before it.
@@ -49,7 +51,10 @@ pub(super) fn lock(segments: &[Segment], body: &mut Body) {
             if shift.length_squared() > 1e-10 {
                 let pose = &mut body.rotations[f * JOINT_COUNT..(f + 1) * JOINT_COUNT];
                 canonical().globals(body.root[f], pose, &mut globals);
-                move_ankle(pose, &globals, ankle, shift);
+                let missed = move_ankle(pose, &globals, ankle, shift);
+                if missed > MAX_MISS && body.strained.last() != Some(&f) {
+                    body.strained.push(f);
+                }
             }
         }
     }
@@ -78,7 +83,7 @@ fn locks(segments: &[Segment], foot: Foot, begin: i32, frames: i32) -> Vec<Lock>
 fn trajectory(body: &Body, joint: usize) -> Vec<Vec3> {
     let mut globals = Vec::new();
     let position = |f: usize| {
-        canonical().globals(body.root[f], &body.rotations[f * JOINT_COUNT..(f + 1) * JOINT_COUNT], &mut globals);
+        body.globals(f, &mut globals);
         globals[joint].0
     };
     (0..body.root.len()).map(position).collect()
@@ -129,7 +134,7 @@ fn lowering(body: &Body, ankles: [usize; 2], offsets: &[Vec<Vec3>; 2]) -> Vec<f3
     let mut globals = Vec::new();
     let need: Vec<f32> = (0..n)
         .map(|f| {
-            canonical().globals(body.root[f], &body.rotations[f * JOINT_COUNT..(f + 1) * JOINT_COUNT], &mut globals);
+            body.globals(f, &mut globals);
             let of_leg = |k: usize| {
                 let (hip, ankle) = (globals[ankles[k] - 2].0, globals[ankles[k]].0 + offsets[k][f]);
                 let reach = leg_length(ankles[k]) * LEG_STRETCH;
@@ -154,16 +159,17 @@ fn leg_length(ankle: usize) -> f32 {
     joints[ankle].offset.length() + joints[ankle - 1].offset.length()
 }
 
-/// Moves an ankle by `shift`, the foot keeping its orientation.
-fn move_ankle(pose: &mut [Quat], globals: &[(Vec3, Quat)], ankle: usize, shift: Vec3) {
+/// Moves an ankle by `shift`, the foot keeping its orientation; returns how far it falls short, metres.
+fn move_ankle(pose: &mut [Quat], globals: &[(Vec3, Quat)], ankle: usize, shift: Vec3) -> f32 {
     let (up, knee) = (ankle - 2, ankle - 1);
     let pole = globals[up].1 * Vec3::Z;
     let target = globals[ankle].0 + shift;
-    let (swing, bend, _) = two_bone(globals[up].0, globals[knee].0, globals[ankle].0, target, pole, 0.9999);
+    let (swing, bend, reached) = two_bone(globals[up].0, globals[knee].0, globals[ankle].0, target, pole, 0.9999);
     let (up_rotation, knee_rotation) = (swing * globals[up].1, swing * bend * globals[knee].1);
     pose[up] = (globals[0].1.inverse() * up_rotation).normalize();
     pose[knee] = (up_rotation.inverse() * knee_rotation).normalize();
     pose[ankle] = (knee_rotation.inverse() * globals[ankle].1).normalize();
+    reached.distance(target)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ mod feet;
 
 use glam::{Quat, Vec3};
 
-use crate::motion::Motion;
+use crate::motion::{JOINT_COUNT, Motion, canonical};
 use crate::patch::PatchKind;
 use crate::stage::FragmentUse;
 
@@ -47,6 +47,20 @@ pub struct Body {
     pub root: Vec<Vec3>,
     /// Rotations, frame-major: hips' global, others local.
     pub rotations: Vec<Quat>,
+    /// Indices of the frames on which a leg is too short for where its foot is planted.
+    pub strained: Vec<usize>,
+}
+
+impl Body {
+    /// Rotations of all joints at frame `index` of the motion.
+    pub fn pose(&self, index: usize) -> &[Quat] {
+        &self.rotations[index * JOINT_COUNT..(index + 1) * JOINT_COUNT]
+    }
+
+    /// Global joint transforms at frame `index` of the motion, into `out`.
+    pub fn globals(&self, index: usize, out: &mut Vec<(Vec3, Quat)>) {
+        canonical().globals(self.root[index], self.pose(index), out);
+    }
 }
 
 /// The final motion of a person over the frames 0..=last_frame of the crowd at which the person is there.

@@ -256,7 +256,7 @@ fn split(view: View, closing: &Closing, path: &MotionPath, begin: i32, end: i32)
     };
     let cut = role(first).ticks as usize;
     let share = cut as f32 / (path.len() - 1) as f32;
-    let range = |r| view.library.limits.tick_range(role(r).path.len());
+    let range = |r| role(r).tick_range;
     let ((low_a, high_a), (low_b, high_b)) = (range(first), range(second));
     let ticks = ((end - begin) as f32 * share).round() as i32;
     let ticks = ticks.clamp(low_a.max(end - begin - high_b), high_a.min(end - begin - low_b));

@@ -2,14 +2,17 @@
 
 use rayon::prelude::*;
 
+use super::audition::plays_cleanly;
 use super::footprint::{Footprint, footprints, reach};
 use crate::deform::{Limits, Strand};
 use crate::geom::Ground;
-use crate::motion::MotionPath;
-use crate::patch::PatchSet;
+use crate::motion::{JOINT_COUNT, Motion, MotionPath};
+use crate::patch::{PatchSet, fastest_turns};
 
 /// Growth of footprints: what blending, foot locking and sampling between frames may move a body, metres.
 const MARGIN: f32 = 0.02;
+/// Warped in time, a joint may turn this much faster than the captures' fastest.
+const RUSH: f32 = 1.1;
 /// Longest strand of two single-person kinds that closes a gap, in frames.
 const MAX_STRAND_FRAMES: usize = 110;
 
@@ -25,6 +28,8 @@ pub(super) struct Role {
     pub exit: Ground,
     /// Duration in ticks if not warped: frames - 1.
     pub ticks: i32,
+    /// Fewest and most ticks it may be warped to.
+    pub tick_range: (i32, i32),
     /// Pose group of the entry.
     pub entry_group: u32,
     /// Pose group of the exit.
@@ -74,7 +79,7 @@ pub(super) struct Library<'a> {
     pub roles: Vec<Role>,
     /// Index of each kind's first role.
     pub first_role: Vec<u32>,
-    /// Kinds of two or more people.
+    /// Kinds of two or more people that are fit to be cast.
     pub multi: Vec<u32>,
     /// Moves by the pose group they start from, forward in time.
     pub forward: Vec<Vec<Move>>,
@@ -82,6 +87,8 @@ pub(super) struct Library<'a> {
     pub backward: Vec<Vec<Move>>,
     /// By entry group * groups + exit group.
     pub closings: Vec<Vec<Closing>>,
+    /// Fastest turn of each joint in the captures, radians per frame.
+    pub fastest: [f32; JOINT_COUNT],
     /// Largest reach of any footprint.
     pub max_reach: f32,
 }
@@ -91,7 +98,8 @@ impl<'a> Library<'a> {
     pub fn new(set: &'a PatchSet, limits: Limits) -> Self {
         let sources: Vec<(u32, u32)> =
             (0..set.kinds.len()).flat_map(|k| (0..set.kinds[k].people()).map(move |r| (k as u32, r as u32))).collect();
-        let roles: Vec<Role> = sources.par_iter().map(|&(k, r)| prepare(set, k, r)).collect();
+        let fastest = set.fastest_turns();
+        let roles: Vec<Role> = sources.par_iter().map(|&(k, r)| prepare(set, k, r, &limits, &fastest)).collect();
         let first_role = (0..set.kinds.len() as u32)
             .map(|k| sources.iter().position(|s| s.0 == k).expect("validated: no kind without people") as u32)
             .collect();
@@ -105,15 +113,19 @@ impl<'a> Library<'a> {
             forward[role.entry_group as usize].push(step(role.exit, role.exit_group));
             backward[role.exit_group as usize].push(step(role.exit.inverse(), role.entry_group));
         }
-        let closings = closings(&roles, &limits, groups, is_single);
+        let closings = closings(&roles, groups, is_single);
         Self {
             set,
             limits,
             first_role,
-            multi: (0..set.kinds.len() as u32).filter(|&k| set.kinds[k as usize].people() > 1).collect(),
+            multi: (0..set.kinds.len() as u32)
+                .into_par_iter()
+                .filter(|&k| set.kinds[k as usize].people() > 1 && plays_cleanly(&set.kinds[k as usize]))
+                .collect(),
             forward,
             backward,
             closings,
+            fastest,
             max_reach: roles.iter().flat_map(|r| &r.reach).copied().fold(0.0, f32::max),
             roles,
         }
@@ -126,7 +138,7 @@ impl<'a> Library<'a> {
     }
 }
 
-fn prepare(set: &PatchSet, kind: u32, role: u32) -> Role {
+fn prepare(set: &PatchSet, kind: u32, role: u32, limits: &Limits, fastest: &[f32; JOINT_COUNT]) -> Role {
     let fragment = &set.kinds[kind as usize].fragments[role as usize];
     let source = &fragment.motion.path;
     let entry = source.at(0);
@@ -141,6 +153,7 @@ fn prepare(set: &PatchSet, kind: u32, role: u32) -> Role {
         role,
         exit: path.at(path.len() - 1),
         ticks: path.len() as i32 - 1,
+        tick_range: tick_range(&fragment.motion, limits, fastest),
         entry_group: fragment.entry_group,
         exit_group: fragment.exit_group,
         entry,
@@ -151,11 +164,20 @@ fn prepare(set: &PatchSet, kind: u32, role: u32) -> Role {
     }
 }
 
-fn closings(roles: &[Role], limits: &Limits, groups: usize, is_single: impl Fn(&Role) -> bool) -> Vec<Vec<Closing>> {
+/// The limits' range, cut so that no joint is sped up beyond what the set's captures show of it.
+fn tick_range(motion: &Motion, limits: &Limits, fastest: &[f32; JOINT_COUNT]) -> (i32, i32) {
+    let (shortest, longest) = limits.tick_range(motion.len());
+    let own = fastest_turns([motion]);
+    let rate = (0..JOINT_COUNT).map(|j| RUSH * fastest[j] / own[j]).fold(f32::INFINITY, f32::min);
+    let unhurried = ((motion.len() - 1) as f32 / rate).ceil() as i32;
+    (shortest.max(unhurried).min(longest), longest)
+}
+
+fn closings(roles: &[Role], groups: usize, is_single: impl Fn(&Role) -> bool) -> Vec<Vec<Closing>> {
     let strands: Vec<Option<Strand>> = roles.iter().map(|r| is_single(r).then(|| Strand::new(&r.path))).collect();
     let mut table: Vec<Vec<Closing>> = (0..groups * groups).map(|_| Vec::new()).collect();
     let mut add = |first: usize, second: Option<usize>, strand: Strand| {
-        let ranges = [Some(first), second].into_iter().flatten().map(|r| limits.tick_range(roles[r].path.len()));
+        let ranges = [Some(first), second].into_iter().flatten().map(|r| roles[r].tick_range);
         let ticks = ranges.fold((0, 0), |sum, range| (sum.0 + range.0, sum.1 + range.1));
         let (from, to) = (roles[first].entry_group, roles[second.unwrap_or(first)].exit_group);
         let roles = [Some(first as u32), second.map(|s| s as u32)];

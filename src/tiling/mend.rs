@@ -12,7 +12,8 @@ use super::bake::segments_of;
 use super::bridge::Taste;
 use super::tracks::{TrackId, Tracks, Undo, Window};
 use crate::geom::Capsule;
-use crate::motion::{JOINT_COUNT, body_capsules, canonical};
+use crate::motion::{JOINT_COUNT, body_capsules};
+use crate::patch::turn_between;
 use crate::refine::{Body, Segment, refine};
 
 /// Bodies whose hips are further apart than this never touch, metres.
@@ -21,15 +22,17 @@ const TOUCHING_HIPS: f32 = 2.2;
 const TOLERANCE: f32 = 0.005;
 /// Ticks ripped up before and after a fault, growing with each try.
 const WINDOW: i32 = 24;
+/// Joints may turn this much faster than in the captures.
+const RUSH: f32 = 1.15;
 /// Tries per fault.
 const TRIES: i32 = 8;
 
-/// Two people interpenetrating, or one in a wall.
+/// Something wrong with the final bodies: two people interpenetrate, or one moves as nobody can.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Fault {
     /// One person.
     pub a: TrackId,
-    /// The other.
+    /// The other; the same one if alone to blame.
     pub b: TrackId,
     /// When.
     pub tick: i32,
@@ -49,7 +52,7 @@ pub(super) fn bodies(tracks: &Tracks) -> Vec<Body> {
         .collect()
 }
 
-/// The first tick of each stretch of time over which two people of different instances interpenetrate.
+/// All faults of the final bodies, each at its first tick.
 pub(super) fn faults(tracks: &Tracks, bodies: &[Body]) -> Vec<Fault> {
     let per_tick: Vec<Vec<(TrackId, TrackId)>> =
         (0..tracks.domain.horizon).into_par_iter().map(|tick| touching(tracks, bodies, tick)).collect();
@@ -60,7 +63,20 @@ pub(super) fn faults(tracks: &Tracks, bodies: &[Body]) -> Vec<Fault> {
         faults.extend(now.difference(&open).map(|&(a, b)| Fault { a, b, tick: tick as i32 }));
         open = now;
     }
+    let alone = bodies.par_iter().enumerate().map(|(t, body)| {
+        let frame = body.strained.first().copied().into_iter().chain(first_rushed(body, &tracks.library.fastest)).min();
+        frame.map(|f| Fault { a: t, b: t, tick: body.begin as i32 + f as i32 })
+    });
+    faults.extend(alone.collect::<Vec<_>>().into_iter().flatten());
     faults
+}
+
+/// The first frame on which a joint turns faster than the captures' fastest, with some allowance.
+fn first_rushed(body: &Body, fastest: &[f32; JOINT_COUNT]) -> Option<usize> {
+    (1..body.root.len()).find(|&f| {
+        let (before, now) = (body.pose(f - 1), body.pose(f));
+        (0..JOINT_COUNT).any(|j| turn_between(before[j], now[j]) > RUSH * fastest[j])
+    })
 }
 
 /// Bodies of one tick, sorted along x so that near ones are neighbours.
@@ -102,7 +118,7 @@ fn same_instance(tracks: &Tracks, a: TrackId, b: TrackId, tick: i32) -> bool {
 }
 
 fn capsules(body: &Body, frame: usize, globals: &mut Vec<(Vec3, Quat)>) -> Vec<Capsule> {
-    canonical().globals(body.root[frame], &body.rotations[frame * JOINT_COUNT..(frame + 1) * JOINT_COUNT], globals);
+    body.globals(frame, globals);
     let mut capsules = Vec::new();
     body_capsules(globals, &mut capsules);
     capsules

@@ -1,5 +1,6 @@
 //! Tiling: packing motion patches into a domain so that no port dangles and nobody collides.
 
+mod audition;
 mod bake;
 mod bridge;
 mod domain;

@@ -1,0 +1,56 @@
+//! Audition: a patch of several people is cast only if it comes out of full-body refinement as clean as it was
+//! captured. Feet that slid in the capture are locked, and where legs are intertwined that can push one into another.
+
+use glam::{Quat, Vec3};
+
+use crate::geom::Capsule;
+use crate::motion::{Motion, body_capsules};
+use crate::patch::PatchKind;
+use crate::refine::{Body, Segment, refine};
+use crate::stage::FragmentUse;
+
+/// How much deeper than captured the people of a patch may overlap after refinement, metres.
+const ALLOWANCE: f32 = 0.007;
+
+/// True if refinement keeps the people of `kind` as clear of each other as in the capture. O(pairs x frames).
+pub(super) fn plays_cleanly(kind: &PatchKind) -> bool {
+    let played: Vec<Body> = (0..kind.people()).map(|role| play(kind, role)).collect();
+    let (mut globals, mut now, mut then) = (Vec::new(), Vec::new(), Vec::new());
+    let last = kind.fragments.iter().map(|f| f.begin as usize + f.motion.len()).max().unwrap_or(0);
+    (0..last).all(|frame| {
+        now.clear();
+        then.clear();
+        for (fragment, body) in kind.fragments.iter().zip(&played) {
+            if let Some(f) = frame.checked_sub(fragment.begin as usize).filter(|&f| f < fragment.motion.len()) {
+                now.push(shapes(|g| body.globals(f, g), &mut globals));
+                then.push(shapes(|g| fragment.motion.globals(f, g), &mut globals));
+            }
+        }
+        (0..now.len()).all(|i| (0..i).all(|j| depth(&now[i], &now[j]) <= depth(&then[i], &then[j]).max(0.0) + ALLOWANCE))
+    })
+}
+
+fn play(kind: &PatchKind, role: usize) -> Body {
+    let fragment = &kind.fragments[role];
+    let motion: &Motion = &fragment.motion;
+    let placed = FragmentUse {
+        instance: 0,
+        role: role as u32,
+        begin: 0,
+        end: motion.len() as i32 - 1,
+        points: motion.path.points.clone(),
+        headings: motion.path.headings.clone(),
+    };
+    refine(&[Segment { kind, placed: &placed }], motion.len() as u32 - 1)
+}
+
+fn shapes(pose: impl Fn(&mut Vec<(Vec3, Quat)>), globals: &mut Vec<(Vec3, Quat)>) -> Vec<Capsule> {
+    pose(globals);
+    let mut capsules = Vec::new();
+    body_capsules(globals, &mut capsules);
+    capsules
+}
+
+fn depth(a: &[Capsule], b: &[Capsule]) -> f32 {
+    a.iter().flat_map(|p| b.iter().map(|q| p.penetration(q))).fold(0.0, f32::max)
+}
