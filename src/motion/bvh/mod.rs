@@ -1,1 +1,5 @@
 //! BVH files, read and written.
+
+mod write;
+
+pub use write::write;

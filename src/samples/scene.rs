@@ -1,0 +1,79 @@
+//! A scene: actors, what passes between them, and the patches to cut, played into a take.
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use super::Take;
+use super::actor::{Actor, secs};
+use super::path::Path;
+use super::perform::{perform, plants};
+use crate::motion::BodyPart;
+use crate::motion::take::{
+    ImportOptions, TakeContact, TakeFile, TakePatch, TakePerson, TakePlant, TakePort, TakeProp, TakeRole, Touch,
+};
+
+/// A take in the making. Frames are at 30 per second.
+pub(super) struct Scene {
+    name: String,
+    pub actors: Vec<Actor>,
+    contacts: Vec<TakeContact>,
+    patches: Vec<TakePatch>,
+    pub props: Vec<TakeProp>,
+}
+
+impl Scene {
+    pub fn new(name: &str, actors: Vec<Actor>) -> Self {
+        Self { name: name.to_owned(), actors, contacts: Vec::new(), patches: Vec::new(), props: Vec::new() }
+    }
+
+    /// A patch of people (actor, first frame, last frame); `core` is the time of interaction in seconds.
+    pub fn patch(&mut self, name: &str, labels: &[&str], roles: &[(usize, i32, i32)], core: Option<[f32; 2]>) {
+        self.patches.push(TakePatch {
+            name: name.to_owned(),
+            labels: labels.iter().map(|&l| l.to_owned()).collect(),
+            roles: roles.iter().map(|&(person, a, b)| TakeRole { person, begin: secs(a), end: secs(b) }).collect(),
+            core,
+        });
+    }
+
+    /// Two people touch over a time in seconds.
+    pub fn contact(&mut self, a: (usize, BodyPart), b: (usize, BodyPart), begin: f32, end: f32) {
+        let touch = |(person, part)| Touch { person, part };
+        self.contacts.push(TakeContact { a: touch(a), b: touch(b), begin, end });
+    }
+
+    /// Plays the scene.
+    pub fn play(self, seed: u64) -> Take {
+        let end = self.actors.iter().map(|a| a.now).max().unwrap_or(0);
+        let paths: Vec<Path> = self.actors.iter().map(|a| a.path(end)).collect();
+        let mut clips = Vec::new();
+        let (mut people, mut all_plants, mut ports) = (Vec::new(), Vec::new(), Vec::new());
+        for (person, actor) in self.actors.iter().enumerate() {
+            let stem = format!("{}-{}", self.name, (b'a' + person as u8) as char);
+            let mut rng = ChaCha8Rng::seed_from_u64(seed ^ fnv(&stem));
+            clips.push(perform(actor, person, &paths, end, &stem, &mut rng));
+            people.push(TakePerson { file: format!("{stem}.bvh"), import: ImportOptions::default() });
+            all_plants.extend(
+                plants(actor, end).into_iter().map(|(foot, begin, end)| TakePlant { person, foot, begin, end }),
+            );
+            ports.extend(actor.ports.iter().map(|(f, pose)| TakePort { person, time: secs(*f), pose: pose.clone() }));
+        }
+        let file = TakeFile {
+            format: "crowdquilt-take".into(),
+            version: 1,
+            name: self.name,
+            people,
+            plants: all_plants,
+            contacts: self.contacts,
+            ports,
+            patches: self.patches,
+            props: self.props,
+        };
+        Take { file, clips }
+    }
+}
+
+/// FNV-1a, so that every person of every take has random numbers of their own.
+fn fnv(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3))
+}
