@@ -108,6 +108,19 @@ impl Actor {
         }
     }
 
+    /// Takes back the port at the cursor, where a gesture already runs.
+    pub fn unmark(&mut self) {
+        self.ports.retain(|p| p.0 != self.now);
+    }
+
+    /// Brings a walk to its end, so that the person stands for the rest of the take.
+    pub fn finish(&mut self) {
+        if let Some((_, gait)) = self.walking {
+            self.walk(gait, 1);
+            self.stop(0.0);
+        }
+    }
+
     /// The whole performance is moved so that the path is at `place` at the cursor.
     pub fn put(&mut self, place: Ground) {
         self.anchor = (self.now, place);

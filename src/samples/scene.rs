@@ -9,8 +9,11 @@ use super::path::Path;
 use super::perform::{perform, plants};
 use crate::motion::BodyPart;
 use crate::motion::take::{
-    ImportOptions, TakeContact, TakeFile, TakePatch, TakePerson, TakePlant, TakePort, TakeProp, TakeRole, Touch,
+    ImportOptions, TakeContact, TakeFile, TakeHold, TakePatch, TakePerson, TakePlant, TakePort, TakeProp, TakeRole, Touch,
 };
+
+/// Size of the box that is carried: width between the hands, height, depth (m).
+pub(super) const BOX: [f32; 3] = [0.36, 0.26, 0.30];
 
 /// A take in the making. Frames are at 30 per second.
 pub(super) struct Scene {
@@ -18,12 +21,13 @@ pub(super) struct Scene {
     pub actors: Vec<Actor>,
     contacts: Vec<TakeContact>,
     patches: Vec<TakePatch>,
-    pub props: Vec<TakeProp>,
+    /// Who takes over the box, in order, each with the second of it (none for the first).
+    box_holders: Vec<(usize, Option<f32>)>,
 }
 
 impl Scene {
     pub fn new(name: &str, actors: Vec<Actor>) -> Self {
-        Self { name: name.to_owned(), actors, contacts: Vec::new(), patches: Vec::new(), props: Vec::new() }
+        Self { name: name.to_owned(), actors, contacts: Vec::new(), patches: Vec::new(), box_holders: Vec::new() }
     }
 
     /// A patch of people (actor, first frame, last frame); `core` is the time of interaction in seconds.
@@ -42,8 +46,27 @@ impl Scene {
         self.contacts.push(TakeContact { a: touch(a), b: touch(b), begin, end });
     }
 
+    /// There is a box, held by these people in order; each but the first with the second of taking it over.
+    pub fn hold_box(&mut self, holders: Vec<(usize, Option<f32>)>) {
+        self.box_holders = holders;
+    }
+
+    /// The box as a prop of a take that lasts `end` seconds.
+    fn props(&self, end: f32) -> Vec<TakeProp> {
+        let begin = |i: usize| self.box_holders[i].1.unwrap_or(0.0);
+        let last = self.box_holders.len();
+        let held = (0..last).map(|i| TakeHold {
+            person: self.box_holders[i].0,
+            begin: begin(i),
+            end: if i + 1 < last { begin(i + 1) } else { end },
+        });
+        let held: Vec<_> = held.collect();
+        if held.is_empty() { vec![] } else { vec![TakeProp { name: "box".into(), size: BOX, held }] }
+    }
+
     /// Plays the scene.
-    pub fn play(self, seed: u64) -> Take {
+    pub fn play(mut self, seed: u64) -> Take {
+        self.actors.iter_mut().for_each(Actor::finish);
         let end = self.actors.iter().map(|a| a.now).max().unwrap_or(0);
         let paths: Vec<Path> = self.actors.iter().map(|a| a.path(end)).collect();
         let mut clips = Vec::new();
@@ -58,6 +81,7 @@ impl Scene {
             );
             ports.extend(actor.ports.iter().map(|(f, pose)| TakePort { person, time: secs(*f), pose: pose.clone() }));
         }
+        let props = self.props(secs(end));
         let file = TakeFile {
             format: "crowdquilt-take".into(),
             version: 1,
@@ -67,7 +91,7 @@ impl Scene {
             contacts: self.contacts,
             ports,
             patches: self.patches,
-            props: self.props,
+            props,
         };
         Take { file, clips }
     }

@@ -1,5 +1,6 @@
 //! One person walking: straight at three speeds, turning, starting, stopping, changing speed.
 
+use super::solo;
 use crate::motion::Foot;
 use crate::samples::actor::Actor;
 use crate::samples::gait::{FAST, Gait, NORMAL, SLOW};
@@ -8,26 +9,19 @@ use crate::samples::scene::Scene;
 pub(super) fn scenes() -> Vec<Scene> {
     let mut all = vec![straight("walk-slow", SLOW, "0.80"), straight("walk-normal", NORMAL, "1.15")];
     all.push(straight("walk-fast", FAST, "1.45"));
-    all.extend([30.0, 60.0, 90.0].map(turn));
+    for foot in [Foot::Left, Foot::Right] {
+        all.extend([30.0, 60.0, 90.0].map(|angle| turn(angle, foot)));
+    }
     all.push(u_turn());
     all.extend([0.0, 45.0, 90.0].map(start_stop));
     all.push(speeds());
     all
 }
 
-/// A scene of one actor, with patches (name, labels, first frame, last frame).
-pub(super) fn solo(name: &str, actor: Actor, patches: &[(&str, &[&str], i32, i32)]) -> Scene {
-    let mut scene = Scene::new(name, vec![actor]);
-    for &(name, labels, begin, end) in patches {
-        scene.patch(name, labels, &[(0, begin, end)], None);
-    }
-    scene
-}
-
 fn straight(name: &str, gait: Gait, speed: &str) -> Scene {
     let mut a = Actor::standing();
     a.stand(10);
-    a.start(Foot::Right, gait, 0.0);
+    a.start(Foot::Left, gait, 0.0);
     a.walk(gait, 1);
     let at = a.now;
     a.walk(gait, 1);
@@ -47,10 +41,11 @@ fn straight(name: &str, gait: Gait, speed: &str) -> Scene {
     )
 }
 
-fn turn(angle: f32) -> Scene {
+/// A turn to the left, begun in mid-stance on `foot`.
+fn turn(angle: f32, foot: Foot) -> Scene {
     let mut a = Actor::standing();
     a.stand(10);
-    a.start(Foot::Right, NORMAL, 0.0);
+    a.start(foot, NORMAL, 0.0);
     a.walk(NORMAL, 1);
     let from = a.now;
     let halves = if angle > 75.0 { 3 } else { 2 };
@@ -58,7 +53,8 @@ fn turn(angle: f32) -> Scene {
     let to = a.now;
     a.walk(NORMAL, 2);
     a.stop(0.0);
-    solo(&format!("turn-{angle}"), a, &[(&format!("turn-{angle}"), &["walk", "turn"], from, to)])
+    let name = format!("turn-{angle}{}", if foot == Foot::Left { "" } else { "-right-foot" });
+    solo(&name.clone(), a, &[(&name, &["walk", "turn"], from, to)])
 }
 
 fn u_turn() -> Scene {
