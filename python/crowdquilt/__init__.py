@@ -1,0 +1,47 @@
+"""Crowdquilt stitches motion capture into crowds.
+
+The modules are the stages of the pipeline, named like those of the Rust core::
+
+    samples -> motion -> patch -> tiling -> stage -> check, export
+
+Metres, seconds, radians; right-handed, y up, the ground is the xz plane. Motion runs at 30 frames per second.
+"""
+
+from crowdquilt import check, export, motion, patch, plot, samples, stage, tiling
+from crowdquilt._core import (
+    Clip,
+    Crowd,
+    CrowdquiltError,
+    Fragment,
+    Kind,
+    Outcome,
+    PatchSet,
+    Report,
+    Role,
+    Row,
+    Scene,
+    __version__,
+)
+
+__all__ = [
+    "Clip",
+    "Crowd",
+    "CrowdquiltError",
+    "Fragment",
+    "Kind",
+    "Outcome",
+    "PatchSet",
+    "Report",
+    "Role",
+    "Row",
+    "Scene",
+    "__version__",
+    "check",
+    "export",
+    "motion",
+    "patch",
+    "plot",
+    "samples",
+    "stage",
+    "tiling",
+]

@@ -1,0 +1,28 @@
+"""A crowd as files other programs read: glTF (`.glb`) and BVH, one per person."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from crowdquilt._core import Crowd
+from crowdquilt._core import export_bvh as bvh
+from crowdquilt._core import export_glb as glb
+from crowdquilt.outputs import whole_file, whole_folder
+
+__all__ = ["bvh", "glb", "save_bvh", "save_glb"]
+
+
+def save_glb(crowd: Crowd, path: Path) -> Path:
+    """Write every person as one skinned, animated mesh into one binary glTF file."""
+    with whole_file(path) as part:
+        part.write_bytes(glb(crowd))
+    return path
+
+
+def save_bvh(crowd: Crowd, folder: Path) -> list[Path]:
+    """Write `person_000.bvh`, `person_001.bvh`, ... into `folder`; those of an earlier, larger crowd go away."""
+    names = [f"person_{person:03}.bvh" for person in range(len(crowd))]
+    with whole_folder(folder, stale="person_*.bvh") as part:
+        for person, name in enumerate(names):
+            (part / name).write_text(bvh(crowd, person), encoding="ascii", newline="\n")
+    return [folder / name for name in names]

@@ -1,0 +1,174 @@
+"""The crowd from above at one moment: bodies, where they come from, and the patches they are in.
+
+Seen from above, x points right and z points down the sheet: drawn with z upwards, everybody would be left-handed.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+
+from crowdquilt._core import Crowd
+from crowdquilt.plot import style
+from crowdquilt.plot.lives import Lives, busiest, lives, together
+
+TRAIL_SECS = 2.0
+HULL_RADIUS = 0.34
+HEAD = 3  # the head's place among the body's capsules
+
+
+def plan(crowd: Crowd, path: str | Path | None = None, time: float | None = None, dpi: int = 160) -> Figure:
+    """Draw the crowd from above at `time` seconds, by default when most people are together.
+
+    Saves to `path` if one is given (`.png`, `.svg`, `.pdf`), and returns the figure.
+    """
+    who = lives(crowd)
+    secs = busiest(crowd, who) if time is None else min(max(time, 0.0), crowd.seconds)
+    low, high = crowd.region.min(axis=0), crowd.region.max(axis=0)
+    width, depth = high - low
+    inches = 9.0
+    sheet = style.new_figure(inches + 1.0, inches * depth / width + 2.2)
+    wide, tall = sheet.get_size_inches()
+    axes = sheet.add_axes((0.5 / wide, 1.15 / tall, inches / wide, inches * depth / width / tall))
+    margin = 0.012 * max(width, depth)
+    axes.set(xlim=(low[0] - margin, high[0] + margin), ylim=(high[1] + margin, low[1] - margin), aspect="equal")
+    axes.axis("off")
+    ground(axes, crowd)
+    kind_colours, palette = style.colours(crowd)
+    hulls(axes, crowd, who, secs, kind_colours)
+    now = person_colours(crowd, who, secs, kind_colours)
+    trails(axes, crowd, secs, now)
+    bodies(axes, crowd, secs, now)
+    captions(sheet, crowd, who, secs, palette)
+    scale_bar(axes, high)
+    if path is not None:
+        style.save(sheet, Path(path), dpi)
+    return sheet
+
+
+def ground(axes: Axes, crowd: Crowd) -> None:
+    """Floor, metre grid, walls and obstacles."""
+    region = Polygon(crowd.region, closed=True, facecolor=style.FLOOR, edgecolor="none", zorder=0)
+    axes.add_patch(region)
+    low, high = np.floor(crowd.region.min(axis=0)), np.ceil(crowd.region.max(axis=0))
+    lines = [[(x, low[1]), (x, high[1])] for x in np.arange(low[0], high[0] + 1)]
+    lines += [[(low[0], z), (high[0], z)] for z in np.arange(low[1], high[1] + 1)]
+    grid = LineCollection(lines, colors=style.HAIR, linewidths=0.45, zorder=1)
+    axes.add_collection(grid)
+    grid.set_clip_path(region)
+    axes.add_patch(Polygon(crowd.region, closed=True, fill=False, edgecolor=style.INK, linewidth=2.2, zorder=9))
+    for obstacle in crowd.obstacles:
+        solid = Polygon(obstacle, closed=True, facecolor="#d7d3c8", edgecolor=style.INK, linewidth=1.4, zorder=2)
+        hatch = Polygon(
+            obstacle, closed=True, fill=False, edgecolor="#b3aea0", linewidth=0, hatch="////", zorder=2.1
+        )
+        axes.add_patch(solid)
+        axes.add_patch(hatch)
+
+
+def hulls(axes: Axes, crowd: Crowd, who: Lives, secs: float, kind_colours: list[style.Colour]) -> None:
+    """The ground that each patch of this moment covers over its whole time."""
+    frame, kinds, instances = secs * crowd.fps, crowd.kinds, crowd.instances
+    for instance, stretches in sorted(who.by_instance.items()):
+        if not any(s.begin <= frame <= s.end for s in stretches):
+            continue
+        kind = instances[instance]
+        outline = style.swept(np.concatenate([s.ground for s in stretches]), HULL_RADIUS)
+        colour, company = kind_colours[kind], kinds[kind].people > 1
+        hull = Polygon(
+            outline,
+            closed=True,
+            facecolor=(*colour, 0.17 if company else 0.055),
+            edgecolor=(*colour, 0.65 if company else 0.16),
+            linewidth=1.0 if company else 0.6,
+            zorder=3.5 if company else 3,
+        )
+        axes.add_patch(hull)
+
+
+def person_colours(
+    crowd: Crowd, who: Lives, secs: float, kind_colours: list[style.Colour]
+) -> dict[int, style.Colour]:
+    """Everybody's colour at one moment: that of the patch they are in."""
+    found = {}
+    for person in range(len(crowd)):
+        instance = who.instance_of(person, secs * crowd.fps)
+        found[person] = style.ALONE if instance is None else kind_colours[crowd.instances[instance]]
+    return found
+
+
+def trails(axes: Axes, crowd: Crowd, secs: float, colours: dict[int, style.Colour]) -> None:
+    """Where everybody came from, fading into the past."""
+    segments, tints, widths = [], [], []
+    now = int(secs * crowd.fps)
+    for person, colour in colours.items():
+        first, last = crowd.span(person)
+        if not first <= now <= last:
+            continue
+        ground = crowd.roots(person)[:, [0, 2]][max(0, now - first - int(TRAIL_SECS * crowd.fps)) : now - first + 1]
+        for i in range(len(ground) - 1):
+            age = (len(ground) - 1 - i) / (TRAIL_SECS * crowd.fps)
+            segments.append(ground[i : i + 2])
+            tints.append((*style.mix(colour, style.INK, 0.15), 0.55 * (1 - age) ** 1.5))
+            widths.append(0.6 + 1.9 * (1 - age))
+    axes.add_collection(LineCollection(segments, colors=tints, linewidths=widths, capstyle="butt", zorder=4))
+
+
+def bodies(axes: Axes, crowd: Crowd, secs: float, colours: dict[int, style.Colour]) -> None:
+    """Everybody's body as its capsules seen from above, with a soft shadow and an outline."""
+    people, capsules = crowd.capsules(secs)
+    shapes, fills, shadows = [], [], []
+    for person, body in zip(people, capsules, strict=True):
+        colour = colours[int(person)]
+        order = np.argsort(body[:, 1] + body[:, 4])
+        shadows += [stadium(body[i], 0.05) + [0.035, 0.045] for i in order]
+        shapes += [stadium(body[i], 0.022) for i in order]
+        fills += [style.mix(colour, style.INK, 0.72)] * len(order)
+        for i in order:
+            height = np.clip((body[i, 1] + body[i, 4]) / 2 / 1.5, 0, 1)
+            shapes.append(stadium(body[i], 0.0))
+            dark = 0.52 if i == HEAD else 0.34 * (1 - height)
+            fills.append(style.mix(colour, style.INK, float(dark)))
+    axes.add_collection(PolyCollection(shadows, facecolors=(0.15, 0.14, 0.12, 0.045), edgecolors="none", zorder=5))
+    axes.add_collection(PolyCollection(shapes, facecolors=fills, edgecolors="none", zorder=6))
+
+
+def stadium(capsule: np.ndarray, grow: float, corners: int = 10) -> np.ndarray:
+    """(2 corners, 2) outline of a capsule seen from above, its radius grown by `grow` metres."""
+    a, b, radius = capsule[[0, 2]], capsule[[3, 5]], capsule[6] + grow
+    along = np.arctan2(b[1] - a[1], b[0] - a[0])
+    half = along + np.pi / 2 + np.linspace(0, np.pi, corners)
+    cap = radius * np.stack([np.cos(half), np.sin(half)], axis=1)
+    return np.concatenate([a + cap, b - cap])
+
+
+def captions(sheet: Figure, crowd: Crowd, who: Lives, secs: float, palette: dict[str, style.Colour]) -> None:
+    """Title, subtitle and legend."""
+    frame, kinds = secs * crowd.fps, crowd.kinds
+    people, _ = crowd.at(secs)
+    company = together(crowd, who, frame)
+    counts: dict[str, int] = dict.fromkeys(palette, 0)
+    for person in people:
+        instance = who.instance_of(int(person), frame)
+        if instance is not None and kinds[crowd.instances[instance]].people > 1:
+            counts[style.activity(kinds[crowd.instances[instance]])] += 1
+    left = 0.5 / sheet.get_figwidth()
+    subtitle = f"Seen from above at {secs:.1f} s of {crowd.seconds:.0f} s   ·   {company} of them in company"
+    style.heading(sheet, f"{len(people)} people on {style.metres(crowd)}", subtitle, left)
+    entries = [(f"{name} {counts[name]}", colour) for name, colour in palette.items() if counts[name]]
+    style.legend(sheet, [*entries, (f"alone {len(people) - company}", style.ALONE)], left, 1 - left)
+
+
+def scale_bar(axes: Axes, corner: np.ndarray) -> None:
+    """One metre, under the lower right corner of the floor."""
+    x, z = corner
+    axes.plot([x - 1, x], [z, z], color=style.INK, linewidth=2.2, clip_on=False, zorder=10)
+    axes.annotate(
+        "1 m", (x - 0.5, z), xytext=(0, -8), textcoords="offset points", size=9.5, color=style.INK,
+        ha="center", va="top", annotation_clip=False,
+    )  # fmt: skip

@@ -1,0 +1,5 @@
+"""The finished crowd, played at any time from its file alone."""
+
+from crowdquilt._core import Crowd, Fragment
+
+__all__ = ["Crowd", "Fragment"]

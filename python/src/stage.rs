@@ -1,0 +1,209 @@
+//! Glue of `crowdquilt::stage`.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crowdquilt::geom::Capsule;
+use crowdquilt::motion::{BODY_CAPSULES, FPS, JOINT_COUNT, body_capsules, canonical};
+use crowdquilt::stage as core;
+use glam::{Quat, Vec3};
+use numpy::{PyArray1, PyArray2, PyArray3};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+
+use crate::error::run;
+use crate::numbers::{points2, points3, rotations, stack};
+use crate::patch::{Kind, kinds};
+
+/// One fragment of an instance in a person's life.
+#[pyclass(frozen, module = "crowdquilt")]
+pub struct Fragment(core::FragmentUse);
+
+#[pymethods]
+impl Fragment {
+    #[getter]
+    fn instance(&self) -> u32 {
+        self.0.instance
+    }
+
+    #[getter]
+    fn role(&self) -> u32 {
+        self.0.role
+    }
+
+    #[getter]
+    fn begin(&self) -> i32 {
+        self.0.begin
+    }
+
+    #[getter]
+    fn end(&self) -> i32 {
+        self.0.end
+    }
+
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        points2(py, &self.0.points)
+    }
+
+    #[getter]
+    fn headings<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_slice(py, &self.0.headings)
+    }
+}
+
+/// A finished crowd.
+#[pyclass(frozen, module = "crowdquilt")]
+pub struct Crowd(pub Arc<core::Crowd>);
+
+impl Crowd {
+    fn person(&self, index: usize) -> PyResult<&core::Character> {
+        let people = &self.0.characters;
+        people.get(index).ok_or_else(|| {
+            PyIndexError::new_err(format!("person {index} does not exist: the crowd has {} people", people.len()))
+        })
+    }
+
+    /// Calls `each` with every person there at `secs` and the global transforms of the joints.
+    fn bodies(&self, secs: f32, mut each: impl FnMut(u32, &[(Vec3, Quat)])) {
+        let (mut pose, mut globals) = ([Quat::IDENTITY; JOINT_COUNT], Vec::new());
+        for (index, character) in self.0.characters.iter().enumerate() {
+            if let Some(root) = character.sample(secs, &mut pose) {
+                canonical().globals(root, &pose, &mut globals);
+                each(index as u32, &globals);
+            }
+        }
+    }
+}
+
+type People<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray3<f32>>);
+
+#[pymethods]
+impl Crowd {
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        run(py, || core::Crowd::load(&path)).map(|crowd| Self(Arc::new(crowd)))
+    }
+
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Self> {
+        run(py, || core::Crowd::from_bytes(data)).map(|crowd| Self(Arc::new(crowd)))
+    }
+
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        run(py, || self.0.save(&path))
+    }
+
+    fn to_bytes(&self) -> Vec<u8> {
+        self.0.to_bytes()
+    }
+
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.0.seed
+    }
+
+    #[getter]
+    fn fps(&self) -> f32 {
+        FPS
+    }
+
+    #[getter]
+    fn frames(&self) -> u32 {
+        self.0.domain.last_frame + 1
+    }
+
+    #[getter]
+    fn seconds(&self) -> f32 {
+        self.0.domain.last_frame as f32 / FPS
+    }
+
+    #[getter]
+    fn region<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        points2(py, &self.0.domain.region.points)
+    }
+
+    #[getter]
+    fn obstacles<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f32>>>> {
+        self.0.domain.obstacles.iter().map(|o| points2(py, &o.points)).collect()
+    }
+
+    #[getter]
+    fn joints(&self) -> Vec<String> {
+        canonical().joints.iter().map(|j| j.name.clone()).collect()
+    }
+
+    #[getter]
+    fn parents(&self) -> Vec<i32> {
+        canonical().joints.iter().map(|j| j.parent.map_or(-1, |p| p as i32)).collect()
+    }
+
+    #[getter]
+    fn kinds(&self, py: Python<'_>) -> PyResult<Vec<Kind>> {
+        kinds(py, &self.0.set)
+    }
+
+    #[getter]
+    fn instances<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_iter(py, self.0.instances.iter().map(|i| i.kind))
+    }
+
+    fn span(&self, person: usize) -> PyResult<(u32, u32)> {
+        self.person(person).map(|c| (c.begin, c.end()))
+    }
+
+    fn roots<'py>(&self, py: Python<'py>, person: usize) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        points3(py, &self.person(person)?.root)
+    }
+
+    fn rotations<'py>(&self, py: Python<'py>, person: usize) -> PyResult<Bound<'py, PyArray3<f32>>> {
+        rotations(py, &self.person(person)?.rotations, JOINT_COUNT)
+    }
+
+    fn positions<'py>(&self, py: Python<'py>, person: usize, frame: u32) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let character = self.person(person)?;
+        if !character.present(frame) {
+            let (begin, end) = (character.begin, character.end());
+            let text = format!("person {person} is there from frame {begin} to {end}, not at frame {frame}");
+            return Err(PyIndexError::new_err(text));
+        }
+        let mut globals = Vec::new();
+        character.globals((frame - character.begin) as usize, &mut globals);
+        points3(py, &globals.iter().map(|(position, _)| *position).collect::<Vec<_>>())
+    }
+
+    fn fragments(&self, person: usize) -> PyResult<Vec<Fragment>> {
+        Ok(self.person(person)?.fragments.iter().cloned().map(Fragment).collect())
+    }
+
+    fn at<'py>(&self, py: Python<'py>, secs: f32) -> PyResult<People<'py>> {
+        let (mut people, mut values) = (Vec::new(), Vec::new());
+        self.bodies(secs, |index, globals| {
+            people.push(index);
+            values.extend(globals.iter().flat_map(|(position, _)| position.to_array()));
+        });
+        Ok((PyArray1::from_vec(py, people), stack(py, values, JOINT_COUNT, 3)?))
+    }
+
+    fn capsules<'py>(&self, py: Python<'py>, secs: f32) -> PyResult<People<'py>> {
+        let (mut people, mut values, mut capsules) = (Vec::new(), Vec::new(), Vec::new());
+        self.bodies(secs, |index, globals| {
+            people.push(index);
+            capsules.clear();
+            body_capsules(globals, &mut capsules);
+            for Capsule { a, b, radius } in &capsules {
+                values.extend([a.x, a.y, a.z, b.x, b.y, b.z, *radius]);
+            }
+        });
+        Ok((PyArray1::from_vec(py, people), stack(py, values, BODY_CAPSULES.len(), 7)?))
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.characters.len()
+    }
+
+    fn __repr__(&self) -> String {
+        let (people, instances) = (self.0.characters.len(), self.0.instances.len());
+        format!("Crowd(people={people}, instances={instances}, seconds={:.2})", self.seconds())
+    }
+}
