@@ -1,0 +1,26 @@
+//! One person of a crowd as a clip, the form that motion files are written from.
+
+use crate::motion::{Clip, FPS, canonical};
+use crate::stage::Crowd;
+use crate::{Error, Result};
+
+/// The final motion of one person.
+///
+/// # Errors
+/// There is no such person, or it has no motion.
+pub fn clip(crowd: &Crowd, character: usize) -> Result<Clip> {
+    let found = crowd.characters.get(character).ok_or_else(|| {
+        let problem = format!("expected one of 0..{}", crowd.characters.len());
+        Error::invalid("crowd", format!("character {character}"), problem)
+    })?;
+    if found.frames() == 0 {
+        return Err(Error::invalid("crowd", format!("character {character}"), "expected a motion, found no frame"));
+    }
+    Ok(Clip {
+        name: format!("person_{character}"),
+        skeleton: canonical().clone(),
+        fps: FPS,
+        root: found.root.clone(),
+        rotations: found.rotations.clone(),
+    })
+}

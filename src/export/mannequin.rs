@@ -1,0 +1,394 @@
+//! The mannequin: a dressed body around the canonical skeleton's rest pose, lofted from a few tables of numbers.
+
+use std::f32::consts::TAU;
+use std::sync::LazyLock;
+
+use glam::Vec3;
+
+use super::loft::{Ring, Surface};
+use super::skinning::{Part, bind, mirrored};
+
+/// What a part of the surface is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Material {
+    /// Torso and sleeves.
+    Shirt,
+    /// Pelvis and legs.
+    Trousers,
+    /// Face, neck, forearms, hands.
+    Skin,
+    /// Hair.
+    Hair,
+    /// Feet.
+    Shoes,
+}
+
+impl Material {
+    /// Number of materials.
+    pub const COUNT: usize = 5;
+    /// All materials, in the order of [`Mannequin::triangles`].
+    pub const ALL: [Self; Self::COUNT] = [Self::Shirt, Self::Trousers, Self::Skin, Self::Hair, Self::Shoes];
+
+    /// Name, as in exported files.
+    pub fn name(self) -> &'static str {
+        ["shirt", "trousers", "skin", "hair", "shoes"][self as usize]
+    }
+}
+
+/// A skinned triangle mesh of a person in the rest pose of the canonical skeleton.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mannequin {
+    /// Vertex positions, metres.
+    pub positions: Vec<Vec3>,
+    /// Unit normals.
+    pub normals: Vec<Vec3>,
+    /// Joints that move each vertex; 0 where the weight is 0.
+    pub joints: Vec<[u16; 4]>,
+    /// Their weights; they sum to 1.
+    pub weights: Vec<[f32; 4]>,
+    /// Triangles per [`Material`], counter-clockwise seen from outside.
+    pub triangles: [Vec<[u16; 3]>; Material::COUNT],
+}
+
+/// The mannequin, built once.
+pub fn mannequin() -> &'static Mannequin {
+    static MANNEQUIN: LazyLock<Mannequin> = LazyLock::new(build);
+    &MANNEQUIN
+}
+
+/// Upright rings: height, half width, front (z), back (z).
+type Slices = &'static [[f32; 4]];
+
+const PELVIS: Slices = &[
+    [0.815, 0.045, 0.020, -0.040],
+    [0.838, 0.118, 0.070, -0.092],
+    [0.880, 0.152, 0.088, -0.114],
+    [0.925, 0.162, 0.094, -0.118],
+    [0.965, 0.156, 0.092, -0.104],
+    [1.000, 0.140, 0.085, -0.088],
+];
+const SHIRT: Slices = &[
+    [0.930, 0.163, 0.097, -0.117],
+    [0.936, 0.1675, 0.1015, -0.1215],
+    [0.985, 0.157, 0.098, -0.105],
+    [1.040, 0.144, 0.094, -0.090],
+    [1.100, 0.138, 0.093, -0.083],
+    [1.170, 0.146, 0.101, -0.089],
+    [1.240, 0.160, 0.112, -0.101],
+    [1.305, 0.172, 0.114, -0.111],
+    [1.360, 0.182, 0.099, -0.110],
+    [1.402, 0.184, 0.076, -0.100],
+    [1.429, 0.164, 0.062, -0.087],
+    [1.448, 0.116, 0.055, -0.075],
+    [1.463, 0.064, 0.051, -0.063],
+];
+const NECK: Slices = &[
+    [1.425, 0.060, 0.046, -0.060],
+    [1.455, 0.054, 0.046, -0.056],
+    [1.490, 0.050, 0.047, -0.051],
+    [1.530, 0.050, 0.050, -0.050],
+    [1.570, 0.052, 0.052, -0.052],
+];
+const HEAD: Slices = &[
+    [1.530, 0.026, 0.096, 0.010],
+    [1.541, 0.041, 0.104, -0.025],
+    [1.560, 0.053, 0.107, -0.050],
+    [1.585, 0.0615, 0.1065, -0.066],
+    [1.615, 0.0685, 0.107, -0.080],
+    [1.645, 0.0735, 0.107, -0.090],
+    [1.675, 0.0750, 0.106, -0.093],
+    [1.703, 0.0710, 0.098, -0.087],
+    [1.726, 0.0600, 0.080, -0.072],
+    [1.742, 0.0410, 0.052, -0.048],
+    [1.749, 0.0200, 0.026, -0.026],
+];
+const NOSE: Slices = &[
+    [1.596, 0.0090, 0.114, 0.085],
+    [1.602, 0.0150, 0.124, 0.085],
+    [1.611, 0.0145, 0.127, 0.085],
+    [1.628, 0.0095, 0.119, 0.085],
+    [1.648, 0.0070, 0.111, 0.085],
+];
+/// Left leg: height, half width, front, back; about x = 0.09.
+const LEG: Slices = &[
+    [0.068, 0.049, 0.054, -0.054],
+    [0.078, 0.051, 0.056, -0.056],
+    [0.150, 0.049, 0.048, -0.055],
+    [0.250, 0.053, 0.046, -0.064],
+    [0.350, 0.058, 0.051, -0.071],
+    [0.480, 0.060, 0.063, -0.059],
+    [0.570, 0.067, 0.071, -0.067],
+    [0.680, 0.077, 0.080, -0.080],
+    [0.800, 0.084, 0.087, -0.095],
+    [0.890, 0.074, 0.076, -0.097],
+    [0.945, 0.046, 0.045, -0.060],
+];
+/// Left sleeve and arm: x, half height (y), half depth (z); about y = 1.395.
+type Lengths = &'static [[f32; 3]];
+
+const SLEEVE: Lengths = &[
+    [0.142, 0.014, 0.016],
+    [0.147, 0.028, 0.031],
+    [0.160, 0.041, 0.045],
+    [0.184, 0.049, 0.053],
+    [0.230, 0.051, 0.055],
+    [0.290, 0.050, 0.054],
+    [0.352, 0.049, 0.053],
+    [0.357, 0.046, 0.050],
+];
+const ARM: Lengths = &[
+    [0.330, 0.043, 0.045],
+    [0.400, 0.040, 0.043],
+    [0.455, 0.037, 0.041],
+    [0.530, 0.036, 0.043],
+    [0.620, 0.029, 0.036],
+    [0.700, 0.022, 0.028],
+];
+const PALM: Lengths = &[
+    [0.690, 0.0215, 0.027],
+    [0.712, 0.0200, 0.029],
+    [0.735, 0.0185, 0.037],
+    [0.765, 0.0170, 0.042],
+    [0.790, 0.0150, 0.042],
+    [0.802, 0.0120, 0.039],
+];
+/// Left fingers: z, length, thickness.
+const FINGERS: [[f32; 3]; 4] =
+    [[0.030, 0.068, 0.0098], [0.0105, 0.077, 0.0100], [-0.0095, 0.071, 0.0098], [-0.0285, 0.055, 0.0088]];
+/// Left shoe: z, half width, height above the ground of sole and instep; about x = 0.09.
+const SHOE: &[[f32; 4]] = &[
+    [-0.066, 0.026, 0.008, 0.060],
+    [-0.050, 0.035, 0.002, 0.082],
+    [-0.015, 0.038, 0.000, 0.094],
+    [0.035, 0.039, 0.000, 0.086],
+    [0.090, 0.045, 0.000, 0.063],
+    [0.140, 0.046, 0.000, 0.050],
+    [0.178, 0.037, 0.002, 0.040],
+    [0.196, 0.021, 0.006, 0.031],
+];
+
+const HAIR_SEGMENTS: usize = 16;
+
+fn build() -> Mannequin {
+    let mut body = Body(Surface::default());
+    body.upright(Material::Trousers, Part::Torso, 14, 0.0, 2.3, PELVIS);
+    body.upright(Material::Shirt, Part::Torso, 14, 0.0, 2.35, SHIRT);
+    body.upright(Material::Skin, Part::Neck, 8, 0.0, 2.0, NECK);
+    body.upright(Material::Skin, Part::Head, 14, 0.0, 2.1, HEAD);
+    body.upright(Material::Skin, Part::Head, 6, 0.0, 2.0, NOSE);
+    body.hair();
+    body.both_sides(|b| b.ear());
+    body.both_sides(|b| b.upright(Material::Trousers, Part::Leg, 10, 0.09, 2.1, LEG));
+    body.both_sides(|b| b.sideways(Material::Shirt, Part::Arm, 10, SLEEVE));
+    body.both_sides(|b| b.sideways(Material::Skin, Part::Arm, 8, ARM));
+    body.both_sides(|b| b.sideways(Material::Skin, Part::Hand, 8, PALM));
+    body.both_sides(Body::fingers);
+    body.both_sides(Body::shoe);
+    let Surface { positions, normals, bindings, triangles } = body.0;
+    Mannequin {
+        positions,
+        normals,
+        joints: bindings.iter().map(|b| b.joints).collect(),
+        weights: bindings.iter().map(|b| b.weights).collect(),
+        triangles,
+    }
+}
+
+struct Body(Surface);
+
+impl Body {
+    /// Adds a loft, its normals and its bindings.
+    fn add(&mut self, material: Material, part: Part, segments: usize, ends: [Vec3; 2], rings: &[Ring]) {
+        let loft = self.0.loft(material, segments, ends, rings);
+        self.0.smooth(&loft);
+        for v in loft.vertices {
+            self.0.bindings[v] = bind(part, self.0.positions[v]);
+        }
+    }
+
+    /// A loft through horizontal slices, from the ground up.
+    fn upright(&mut self, material: Material, part: Part, segments: usize, x: f32, power: f32, slices: Slices) {
+        let rings: Vec<Ring> = slices.iter().map(|s| slice(x, power, s)).collect();
+        self.add(material, part, segments, [rings[0].center, rings[rings.len() - 1].center], &rings);
+    }
+
+    /// A loft along the left arm.
+    fn sideways(&mut self, material: Material, part: Part, segments: usize, lengths: Lengths) {
+        let ring = |&[x, height, depth]: &[f32; 3]| Ring {
+            center: Vec3::new(x, 1.395, 0.0),
+            u: Vec3::Y * height,
+            v: Vec3::Z * depth,
+            power: 2.1,
+        };
+        let rings: Vec<Ring> = lengths.iter().map(ring).collect();
+        self.add(material, part, segments, [rings[0].center, rings[rings.len() - 1].center], &rings);
+    }
+
+    fn fingers(&mut self) {
+        for [z, length, thickness] in FINGERS {
+            self.digit(Vec3::new(0.790, 1.395, z), Vec3::new(1.0, -0.10, z * 2.0), length, thickness);
+        }
+        self.digit(Vec3::new(0.722, 1.392, 0.022), Vec3::new(0.75, -0.12, 0.66), 0.072, 0.0115);
+    }
+
+    /// A finger that bends down a little on its way.
+    fn digit(&mut self, from: Vec3, direction: Vec3, length: f32, thickness: f32) {
+        let direction = direction.normalize();
+        let side = direction.cross(Vec3::Y).normalize();
+        let ring = |(along, scale): (f32, f32)| Ring {
+            center: from + direction * (along * length) - Vec3::Y * (0.16 * length * along * along),
+            u: side.cross(direction) * (thickness * scale * 0.92),
+            v: side * (thickness * scale),
+            power: 2.0,
+        };
+        let rings = [(0.0, 0.95), (0.6, 0.98), (0.96, 0.66)].map(ring);
+        let tip = rings[2].center + direction * (thickness * 0.35);
+        self.add(Material::Skin, Part::Hand, 5, [from, tip], &rings);
+    }
+
+    fn shoe(&mut self) {
+        let ring = |&[z, width, low, high]: &[f32; 4]| Ring {
+            center: Vec3::new(0.09, (low + high) * 0.5, z),
+            u: Vec3::X * width,
+            v: Vec3::Y * ((high - low) * 0.5),
+            power: 2.9,
+        };
+        let rings: Vec<Ring> = SHOE.iter().map(ring).collect();
+        let ends = [Vec3::new(0.09, 0.035, -0.070), Vec3::new(0.09, 0.018, 0.202)];
+        self.add(Material::Shoes, Part::Shoe, 10, ends, &rings);
+    }
+
+    fn ear(&mut self) {
+        let ring = |[y, height]: [f32; 2]| Ring {
+            center: Vec3::new(0.072, y, 0.004 - (y - 1.625) * 0.25),
+            u: Vec3::Z * height,
+            v: Vec3::X * 0.011,
+            power: 2.0,
+        };
+        let rings = [[1.602, 0.007], [1.616, 0.012], [1.643, 0.015], [1.655, 0.006]].map(ring);
+        self.add(Material::Skin, Part::Head, 6, [rings[0].center, rings[3].center], &rings);
+    }
+
+    /// A cap a little larger than the head, from the hairline (high in front, low behind) to the crown. Its lowest
+    /// ring lies below the skin.
+    fn hair(&mut self) {
+        let heights =
+            [(0.0, -0.006), (0.03, 0.006), (0.15, 0.012), (0.35, 0.014), (0.58, 0.014), (0.8, 0.013), (0.95, 0.012)];
+        let blank = heights.map(|_| slice(0.0, 2.1, &HEAD[0]));
+        let ends = [Vec3::new(0.0, 1.66, 0.0), Vec3::new(0.0, 1.763, 0.0)];
+        let loft = self.0.loft(Material::Hair, HAIR_SEGMENTS, ends, &blank);
+        for (v, place) in loft.vertices.clone().skip(1).zip(0..heights.len() * HAIR_SEGMENTS) {
+            let (climb, lift) = heights[place / HAIR_SEGMENTS];
+            let angle = (place % HAIR_SEGMENTS) as f32 / HAIR_SEGMENTS as f32 * TAU;
+            let hairline = 1.580 + 0.118 * smooth((angle.cos() + 0.35) / 0.85);
+            let height = hairline + (1.749 - hairline) * (1.0 - (1.0 - climb) * (1.0 - climb));
+            let p = head_slice(height).point(angle);
+            self.0.positions[v] = p + (p - Vec3::new(0.0, 1.655, 0.006)).normalize_or(Vec3::Y) * lift;
+        }
+        self.0.smooth(&loft);
+        for v in loft.vertices {
+            self.0.bindings[v] = bind(Part::Head, self.0.positions[v]);
+        }
+    }
+
+    /// Adds a part for the left side, then its mirror image.
+    fn both_sides(&mut self, part: impl FnOnce(&mut Self)) {
+        let first = self.0.positions.len();
+        let faces = self.0.triangles.each_ref().map(Vec::len);
+        part(self);
+        let shift = (self.0.positions.len() - first) as u16;
+        for v in first..first + shift as usize {
+            self.0.positions.push(self.0.positions[v] * Vec3::new(-1.0, 1.0, 1.0));
+            self.0.normals.push(self.0.normals[v] * Vec3::new(-1.0, 1.0, 1.0));
+            self.0.bindings.push(mirrored(self.0.bindings[v]));
+        }
+        for (triangles, from) in self.0.triangles.iter_mut().zip(faces) {
+            let mirror: Vec<[u16; 3]> =
+                triangles[from..].iter().map(|&[a, b, c]| [a, c, b].map(|v| v + shift)).collect();
+            triangles.extend(mirror);
+        }
+    }
+}
+
+fn slice(x: f32, power: f32, &[y, width, front, back]: &[f32; 4]) -> Ring {
+    Ring {
+        center: Vec3::new(x, y, (front + back) * 0.5),
+        u: Vec3::Z * ((front - back) * 0.5),
+        v: Vec3::X * width,
+        power,
+    }
+}
+
+/// The head's outline at any height.
+fn head_slice(y: f32) -> Ring {
+    let k = HEAD.iter().rposition(|s| s[0] <= y).unwrap_or(0).min(HEAD.len() - 2);
+    let t = (y - HEAD[k][0]) / (HEAD[k + 1][0] - HEAD[k][0]);
+    slice(0.0, 2.1, &std::array::from_fn(|i| HEAD[k][i] + (HEAD[k + 1][i] - HEAD[k][i]) * t))
+}
+
+fn smooth(t: f32) -> f32 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::{JOINT_COUNT, joint};
+
+    #[test]
+    fn is_small_symmetric_and_as_tall_as_the_skeleton() {
+        let m = mannequin();
+        let triangles: usize = m.triangles.iter().map(Vec::len).sum();
+        assert!((1500..=3100).contains(&triangles), "{triangles}");
+        let top = m.positions.iter().map(|p| p.y).fold(f32::MIN, f32::max);
+        let bottom = m.positions.iter().map(|p| p.y).fold(f32::MAX, f32::min);
+        assert!((1.74..1.78).contains(&top) && bottom.abs() < 0.01, "{bottom} to {top}");
+        for p in &m.positions {
+            let twin = Vec3::new(-p.x, p.y, p.z);
+            assert!(m.positions.iter().any(|q| q.distance(twin) < 1e-4), "{p} has no twin");
+        }
+    }
+
+    #[test]
+    fn every_surface_is_closed_and_turned_outward() {
+        let m = mannequin();
+        for (material, triangles) in Material::ALL.iter().zip(&m.triangles) {
+            let mut edges = std::collections::BTreeMap::new();
+            let mut volume = 0.0;
+            for &[a, b, c] in triangles {
+                for (from, to) in [(a, b), (b, c), (c, a)] {
+                    *edges.entry((from.min(to), from.max(to))).or_insert(0) += if from < to { 1 } else { -1 };
+                }
+                let [p, q, r] = [a, b, c].map(|v| m.positions[v as usize]);
+                volume += p.dot(q.cross(r)) / 6.0;
+                let normals = [a, b, c].map(|v| m.normals[v as usize]);
+                assert!(normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-4));
+            }
+            assert!(edges.values().all(|&n| n == 0), "{material:?} has a hole");
+            assert!(volume > 0.0, "{material:?} is inside out: {volume}");
+        }
+    }
+
+    #[test]
+    fn bindings_are_normalised_and_on_their_own_side() {
+        let m = mannequin();
+        let mut used = [false; JOINT_COUNT];
+        for ((p, joints), weights) in m.positions.iter().zip(&m.joints).zip(&m.weights) {
+            assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5);
+            for (&j, &w) in joints.iter().zip(weights) {
+                assert!(w > 0.0 || j == 0, "joint {j} without weight");
+                used[j as usize] |= w > 0.0;
+                let side = if joint::mirror(j as usize) == j as usize { 0.0 } else { canonical_x(j as usize) };
+                assert!(w == 0.0 || side * p.x > -0.01, "joint {j} moves {p}");
+            }
+        }
+        assert!(used.iter().all(|&u| u), "{used:?}");
+    }
+
+    fn canonical_x(joint: usize) -> f32 {
+        let mut globals = Vec::new();
+        crate::motion::canonical().globals(Vec3::ZERO, &[glam::Quat::IDENTITY; JOINT_COUNT], &mut globals);
+        globals[joint].0.x.signum()
+    }
+}

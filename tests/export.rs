@@ -1,0 +1,200 @@
+//! What is exported says what the crowd says: joints, times, presence. Other people's readers are asked in
+//! `tests/clients`.
+
+mod fixture;
+
+use crowdquilt::export::{clip, glb, look};
+use crowdquilt::motion::{FPS, JOINT_COUNT};
+use crowdquilt::stage::Crowd;
+use glam::{Quat, Vec3};
+use serde_json::Value;
+
+/// The fixture, with a person who comes late and one who leaves early.
+fn crowd() -> Crowd {
+    let mut crowd = fixture::crowd();
+    let late = &mut crowd.characters[fixture::WALKER];
+    late.begin = 20;
+    late.root.drain(..20);
+    late.rotations.drain(..20 * JOINT_COUNT);
+    let early = &mut crowd.characters[fixture::SHAKER];
+    early.root.truncate(80);
+    early.rotations.truncate(80 * JOINT_COUNT);
+    crowd
+}
+
+/// A GLB taken apart.
+struct Glb {
+    json: Value,
+    binary: Vec<u8>,
+}
+
+impl Glb {
+    fn open(bytes: &[u8]) -> Self {
+        let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+        assert_eq!(&bytes[..4], b"glTF");
+        assert_eq!((word(4), word(8)), (2, bytes.len()));
+        let json = word(12);
+        assert_eq!(&bytes[16..20], b"JSON");
+        assert_eq!(&bytes[24 + json..28 + json], b"BIN\0");
+        assert_eq!(word(20 + json), bytes.len() - 28 - json);
+        Self { json: serde_json::from_slice(&bytes[20..20 + json]).unwrap(), binary: bytes[28 + json..].to_vec() }
+    }
+
+    /// The numbers of an accessor; normalised shorts as fractions.
+    fn numbers(&self, accessor: &Value) -> Vec<f32> {
+        let accessor = &self.json["accessors"][accessor.as_u64().unwrap() as usize];
+        let view = &self.json["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
+        let at = |v: &Value| v["byteOffset"].as_u64().unwrap_or(0) as usize;
+        let width = match accessor["type"].as_str().unwrap() {
+            "SCALAR" => 1,
+            "VEC3" => 3,
+            _ => 4,
+        };
+        let count = accessor["count"].as_u64().unwrap() as usize * width;
+        let bytes = &self.binary[at(view) + at(accessor)..];
+        match accessor["componentType"].as_u64().unwrap() {
+            5126 => bytes.chunks_exact(4).take(count).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect(),
+            5122 => bytes
+                .chunks_exact(2)
+                .take(count)
+                .map(|b| (i16::from_le_bytes(b.try_into().unwrap()) as f32 / 32767.0).max(-1.0))
+                .collect(),
+            other => panic!("component type {other}"),
+        }
+    }
+
+    fn node(&self, name: &str) -> usize {
+        self.json["nodes"].as_array().unwrap().iter().position(|n| n["name"] == name).unwrap()
+    }
+
+    /// Times and values of the channel that drives `path` of the node `name`.
+    fn channel(&self, name: &str, path: &str) -> Option<(Vec<f32>, Vec<f32>, String)> {
+        let animation = &self.json["animations"][0];
+        let node = self.node(name);
+        let channel = animation["channels"].as_array().unwrap().iter();
+        let mut found = channel.filter(|c| c["target"]["node"] == node && c["target"]["path"] == path);
+        let sampler = &animation["samplers"][found.next()?["sampler"].as_u64().unwrap() as usize];
+        assert!(found.next().is_none(), "two channels drive {name}.{path}");
+        let interpolation = sampler["interpolation"].as_str().unwrap_or("LINEAR").to_owned();
+        Some((self.numbers(&sampler["input"]), self.numbers(&sampler["output"]), interpolation))
+    }
+}
+
+fn sample(times: &[f32], at: f32) -> (usize, usize, f32) {
+    let after = times.partition_point(|&t| t <= at).clamp(1, times.len().max(2) - 1).min(times.len() - 1);
+    let before = after.saturating_sub(1);
+    let t = if after == before { 0.0 } else { ((at - times[before]) / (times[after] - times[before])).clamp(0.0, 1.0) };
+    (before, after, t)
+}
+
+#[test]
+fn joints_are_where_the_crowd_has_them() {
+    let crowd = crowd();
+    let glb = Glb::open(&glb(&crowd));
+    let skeleton = crowdquilt::motion::canonical();
+    let (mut expected, mut found) = (Vec::new(), Vec::new());
+    for (p, person) in crowd.characters.iter().enumerate() {
+        for frame in [person.begin, person.begin + 17, person.end()] {
+            let secs = frame as f32 / FPS;
+            let (times, values, _) = glb.channel(&format!("person_{p}_hips"), "translation").unwrap();
+            let (i, j, t) = sample(&times, secs);
+            let root = Vec3::from_slice(&values[i * 3..]).lerp(Vec3::from_slice(&values[j * 3..]), t);
+            let pose: Vec<Quat> = skeleton
+                .joints
+                .iter()
+                .map(|joint| {
+                    let (times, values, _) = glb.channel(&format!("person_{p}_{}", joint.name), "rotation").unwrap();
+                    let (i, j, t) = sample(&times, secs);
+                    Quat::from_slice(&values[i * 4..])
+                        .normalize()
+                        .slerp(Quat::from_slice(&values[j * 4..]).normalize(), t)
+                })
+                .collect();
+            skeleton.globals(root, &pose, &mut found);
+            person.globals((frame - person.begin) as usize, &mut expected);
+            for ((e, f), joint) in expected.iter().zip(&found).zip(&skeleton.joints) {
+                assert!(e.0.distance(f.0) < 5e-4, "person {p}, frame {frame}, {}: {} against {}", joint.name, f.0, e.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn neighbouring_rotations_take_the_short_way() {
+    let glb = Glb::open(&glb(&crowd()));
+    for joint in &crowdquilt::motion::canonical().joints {
+        let (_, values, _) = glb.channel(&format!("person_1_{}", joint.name), "rotation").unwrap();
+        let keys: Vec<Quat> = values.chunks_exact(4).map(Quat::from_slice).collect();
+        assert!(keys.windows(2).all(|w| w[0].dot(w[1]) > 0.0), "{}", joint.name);
+    }
+}
+
+#[test]
+fn absent_people_are_scaled_away() {
+    let glb = Glb::open(&glb(&crowd()));
+    let (times, scales, how) = glb.channel("person_0", "scale").unwrap();
+    assert_eq!(how, "STEP");
+    assert_eq!(times, [0.0, 20.0 / FPS]);
+    assert_eq!(scales, [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
+    let (times, scales, _) = glb.channel("person_2", "scale").unwrap();
+    assert_eq!(times, [0.0, 80.0 / FPS]);
+    assert_eq!(scales[..3], [1.0; 3]);
+    assert_eq!(scales[3..], [0.0; 3]);
+    assert!(glb.channel("person_1", "scale").is_none(), "always there");
+    let extras = &glb.json["nodes"][glb.node("person_0")]["extras"];
+    assert_eq!(extras["person"], 0);
+    assert!((extras["begin_secs"].as_f64().unwrap() - 20.0 / 30.0).abs() < 1e-6);
+    assert!((extras["end_secs"].as_f64().unwrap() - 119.0 / 30.0).abs() < 1e-6);
+}
+
+#[test]
+fn people_share_their_vertices_and_not_their_looks() {
+    let glb = Glb::open(&glb(&crowd()));
+    let meshes = glb.json["meshes"].as_array().unwrap();
+    assert_eq!(meshes.len(), 4);
+    let attributes = &meshes[0]["primitives"][0]["attributes"];
+    assert!(meshes.iter().flat_map(|m| m["primitives"].as_array().unwrap()).all(|p| &p["attributes"] == attributes));
+    let materials = |m: &Value| -> Vec<Value> {
+        m["primitives"].as_array().unwrap().iter().map(|p| p["material"].clone()).collect()
+    };
+    assert_ne!(materials(&meshes[0]), materials(&meshes[1]));
+    assert_ne!(look(0), look(1));
+    assert_eq!(glb.json["scenes"][0]["nodes"].as_array().unwrap().len(), 8, "a joint root and a mesh for each of four");
+}
+
+#[test]
+fn the_same_crowd_makes_the_same_bytes_and_an_empty_one_is_a_file_too() {
+    let mut crowd = crowd();
+    assert_eq!(glb(&crowd), glb(&crowd));
+    std::fs::write(concat!(env!("CARGO_TARGET_TMPDIR"), "/fixture.glb"), glb(&crowd)).unwrap();
+    crowd.save(concat!(env!("CARGO_TARGET_TMPDIR"), "/fixture.crowd").as_ref()).unwrap();
+    crowd.characters.clear();
+    let empty = glb(&crowd);
+    let json: Value = serde_json::from_slice(&empty[20..]).unwrap();
+    assert!(json.get("meshes").is_none() && json["asset"]["version"] == "2.0");
+    std::fs::write(concat!(env!("CARGO_TARGET_TMPDIR"), "/empty.glb"), empty).unwrap();
+}
+
+#[test]
+fn a_clip_is_the_persons_motion() {
+    let crowd = crowd();
+    let clip = clip(&crowd, fixture::SHAKER).unwrap();
+    assert_eq!((clip.frames(), clip.fps), (80, FPS));
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    clip.globals(40, &mut a);
+    crowd.characters[fixture::SHAKER].globals(40, &mut b);
+    assert_eq!(a, b);
+    let error = crowdquilt::export::clip(&crowd, 9).unwrap_err().to_string();
+    assert!(error.contains("character 9") && error.contains("0..4"), "{error}");
+}
+
+#[test]
+fn a_crowd_of_seventy_stays_small() {
+    let crowd = fixture::lattice(70, 600);
+    let begin = std::time::Instant::now();
+    let bytes = glb(&crowd);
+    println!("70 people, 601 frames: {:.1} MB in {:?}", bytes.len() as f64 / 1e6, begin.elapsed());
+    // 16-bit rotations of 22 joints and a position for every person and frame, and little else.
+    assert!(bytes.len() < 70 * 601 * (22 * 8 + 12) + 1_500_000, "{}", bytes.len());
+    std::fs::write(concat!(env!("CARGO_TARGET_TMPDIR"), "/seventy.glb"), bytes).unwrap();
+}
