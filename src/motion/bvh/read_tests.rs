@@ -146,7 +146,7 @@ fn a_deep_chain_costs_no_call_stack() {
     let root = "HIERARCHY ROOT r { OFFSET 0 0 0 CHANNELS 4 Xposition Yposition Zposition Yrotation\n";
     let frame = "0 ".repeat(n + 4);
     let text =
-        [root, &joint.repeat(n), &"}".repeat(1), &"\n}".repeat(n), "\nMOTION\nFrames: 1\nFrame Time: 1\n", &frame]
+        [root, &joint.repeat(n), &"}\n".repeat(n + 1), "\nMOTION\nFrames: 1\nFrame Time: 1\n", &frame]
             .concat();
     assert_eq!(read(text.as_bytes()).unwrap().skeleton.joints.len(), n + 1);
 }
