@@ -5,4 +5,5 @@ mod read;
 #[cfg(test)]
 mod read_tests;
 
+pub(crate) use read::MIN_FPS;
 pub use read::{load, read};

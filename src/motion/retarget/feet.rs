@@ -85,9 +85,8 @@ fn drop_hips(motion: &mut Motion, targets: &[Vec<Vec3>; 2]) {
     }
     // The largest drop near a frame, smoothed: enough at the frame itself, gradual around it.
     let near = (2.0 * DROP_SIGMA * FPS).round() as usize;
-    let widest = |f: usize| {
-        drops[f.saturating_sub(near)..(f + near + 1).min(drops.len())].iter().copied().fold(0.0, f32::max)
-    };
+    let widest =
+        |f: usize| drops[f.saturating_sub(near)..(f + near + 1).min(drops.len())].iter().copied().fold(0.0, f32::max);
     let widened: Vec<f32> = (0..drops.len()).map(widest).collect();
     for (height, drop) in motion.heights.iter_mut().zip(smooth(&widened, DROP_SIGMA * FPS)) {
         *height -= drop.max(0.0);
