@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use crowdquilt::motion::take::ImportOptions;
-use crowdquilt::motion::{Clip, Foot, Motion, contacts, gait, import, joint, plants, retarget};
+use crowdquilt::motion::{Clip, Foot, Motion, contacts, gait, import, joint, plants, pose, retarget};
 use crowdquilt::patch::{PatchSet, cut_folder};
 
 /// The folder of captures, if it is there.
@@ -208,6 +208,54 @@ fn the_patches_of_the_examples_close_on_each_other() {
     };
     let walks = || set.kinds.iter().filter(|k| k.people() == 1 && k.labels.iter().any(|l| l == "turn"));
     assert!(walks().any(|k| turn(k) > 0.5) && walks().any(|k| turn(k) < -0.5));
+}
+
+#[test]
+fn the_patches_of_the_examples_are_clean() {
+    let Some(folder) = mocap() else { return };
+    let takes = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cmu");
+    let set = cut_folder(&takes, Some(&folder)).unwrap();
+    for kind in &set.kinds {
+        for (role, fragment) in kind.fragments.iter().enumerate() {
+            let m = &fragment.motion;
+            for joint in 0..crowdquilt::motion::JOINT_COUNT {
+                let points = plants::trajectory(m, joint);
+                let jolts = points.windows(3).map(|p| (p[2] - 2.0 * p[1] + p[0]).length() * 900.0);
+                let worst = jolts.fold(0.0, f32::max);
+                assert!(worst < 250.0, "{} role {role} joint {joint}: {worst} m/s2", kind.name);
+            }
+            for plant in &m.plants {
+                let ball = if plant.foot == Foot::Left { joint::LEFT_TOE } else { joint::RIGHT_TOE };
+                let points = plants::trajectory(m, ball);
+                let stay = &points[plant.begin as usize..=plant.end as usize];
+                let slide = stay.iter().map(|p| p.with_y(0.0).distance(stay[0].with_y(0.0))).fold(0.0, f32::max);
+                assert!(slide < 0.01, "{} role {role}: a planted foot slides by {slide} m", kind.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn poses_of_one_group_are_alike() {
+    let Some(folder) = mocap() else { return };
+    let takes = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cmu");
+    let set = cut_folder(&takes, Some(&folder)).unwrap();
+    let alone: Vec<&Motion> = set.kinds.iter().filter(|k| k.people() == 1).map(|k| &k.fragments[0].motion).collect();
+    for group in 0..set.groups.len() {
+        let kinds = set.kinds.iter().filter(|k| k.people() == 1).map(|k| &k.fragments[0]).zip(&alone);
+        let mut ports: Vec<(&Motion, usize)> = Vec::new();
+        for (fragment, motion) in kinds {
+            ports.extend((fragment.entry_group as usize == group).then_some((*motion, 0)));
+            ports.extend((fragment.exit_group as usize == group).then_some((*motion, motion.len() - 1)));
+        }
+        let mut gaps = Vec::new();
+        for (i, a) in ports.iter().enumerate() {
+            gaps.extend(ports[i + 1..].iter().map(|b| pose::distance(a.0, a.1, b.0, b.1)));
+        }
+        let (middle, most) = (percentile(gaps.clone(), 50), percentile(gaps, 100));
+        println!("{}: {} ports, median {middle:.3} m, most {most:.3} m", set.groups[group].name, ports.len());
+        assert!(middle < 0.09 && most < 0.16, "{}: {middle} {most}", set.groups[group].name);
+    }
 }
 
 fn single_kinds(set: &PatchSet) -> Vec<(usize, usize)> {

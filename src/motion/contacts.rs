@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn spans_have_hysteresis_and_a_least_length() {
-        let gaps: Vec<f32> = (0..60).map(|f| 0.05 + 0.01 * (f as f32 - 30.0).abs()).collect();
+        let gaps: Vec<f32> = (0..60).map(|f| 0.055 + 0.01 * (f as f32 - 30.0).abs()).collect();
         assert_eq!(spans(&gaps, &ContactOptions::default()), [(26, 40)]);
         let brief: Vec<f32> = (0..60).map(|f| 0.05 + 0.04 * (f as f32 - 30.0).abs()).collect();
         assert!(spans(&brief, &ContactOptions::default()).is_empty());

@@ -138,3 +138,40 @@ impl Joints {
             && [HEAD, LEFT_HAND, RIGHT_HAND].iter().all(|&j| slow(j, options.still_hands))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::testing::{standing, walking};
+
+    #[test]
+    fn a_walk_has_alternating_mid_stances_and_no_stand() {
+        let moments = moments(&walking(4.0), &GaitOptions::default());
+        assert!((6..=8).contains(&moments.len()), "{moments:?}");
+        for pair in moments.windows(2) {
+            assert_ne!(pair[0].phase, pair[1].phase);
+            let step = pair[1].frame - pair[0].frame;
+            assert!((15..=17).contains(&step), "a step of {step} frames, expected 16: {moments:?}");
+        }
+        assert!(moments.iter().all(|m| m.phase != Phase::Stand));
+    }
+
+    #[test]
+    fn someone_who_stands_stands_at_every_frame() {
+        let found = moments(&standing(1.0), &GaitOptions::default());
+        assert_eq!(found.len(), 31);
+        assert!(found.iter().all(|m| m.phase == Phase::Stand));
+    }
+
+    #[test]
+    fn the_mirror_image_swaps_sides() {
+        let walk = walking(3.0);
+        let moments_of = |m: &Motion| moments(m, &GaitOptions::default());
+        let (one, other) = (moments_of(&walk), moments_of(&crate::motion::mirror(&walk)));
+        assert_eq!(one.len(), other.len());
+        for (a, b) in one.iter().zip(&other) {
+            assert_eq!(a.frame, b.frame);
+            assert_ne!(a.phase, b.phase);
+        }
+    }
+}

@@ -31,6 +31,9 @@ pub fn repair(mut clip: Clip, options: &ImportOptions) -> Result<Clip> {
     };
     let unit = positive("metres_per_unit", options.metres_per_unit)?;
     let fps = positive("fps", options.fps)?;
+    if let Some(slow) = fps.filter(|&fps| fps < bvh::MIN_FPS) {
+        return Err(bad("fps", format!("expected at least {} per second, found {slow}", bvh::MIN_FPS)));
+    }
     let drop = options.drop_first_frames as usize;
     if drop >= clip.frames() {
         return Err(bad("drop_first_frames", format!("expected fewer than {} frames, found {drop}", clip.frames())));
@@ -150,6 +153,7 @@ mod tests {
         };
         says(ImportOptions { drop_first_frames: 5, ..Default::default() }, "import.drop_first_frames: expected fewer");
         says(ImportOptions { fps: Some(0.0), ..Default::default() }, "import.fps: expected a positive");
+        says(ImportOptions { fps: Some(0.001), ..Default::default() }, "import.fps: expected at least 1");
         says(ImportOptions { metres_per_unit: Some(f32::NAN), ..Default::default() }, "import.metres_per_unit");
         says(ImportOptions { restore_thorax: true, ..Default::default() }, "import.restore_thorax: expected a chest");
     }

@@ -14,6 +14,8 @@ pub mod pose;
 pub mod retarget;
 mod skeleton;
 pub mod take;
+#[cfg(test)]
+pub(crate) mod testing;
 
 pub use body::{BODY_CAPSULES, BodyCapsule, BodyPart, body_capsules};
 pub use clip::Clip;

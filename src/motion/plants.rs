@@ -14,13 +14,16 @@ pub struct PlantOptions {
     pub end_above: f32,
     /// The ball is at most this high, metres; default 0.08 (planted it is at 0.02, in swing above 0.05).
     pub max_height: f32,
+    /// A plant ends where the ball has risen this far above its lowest height in the plant, metres; default 0.03
+    /// (the heel lifts, the foot rolls over the toes).
+    pub max_rise: f32,
     /// Shorter plants are dropped, seconds; default 0.1.
     pub min_seconds: f32,
 }
 
 impl Default for PlantOptions {
     fn default() -> Self {
-        Self { begin_below: 0.25, end_above: 0.40, max_height: 0.08, min_seconds: 0.1 }
+        Self { begin_below: 0.25, end_above: 0.40, max_height: 0.08, max_rise: 0.03, min_seconds: 0.1 }
     }
 }
 
@@ -77,8 +80,12 @@ fn detect_foot(foot: Foot, ball: &[Vec3], options: &PlantOptions, out: &mut Vec<
         while frame + 1 < ball.len() && may_last(frame + 1) {
             frame += 1;
         }
-        if (frame - begin) as f32 >= options.min_seconds * FPS {
-            out.push(Plant { foot, begin: begin as u32, end: frame as u32 });
+        let lowest = ball[begin..=frame].iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+        let risen = |i: usize| ball[i].y > lowest + options.max_rise;
+        let first = (begin..=frame).find(|&i| !risen(i)).unwrap_or(frame);
+        let last = (first..=frame).rev().find(|&i| !risen(i)).unwrap_or(first);
+        if (last - first) as f32 >= options.min_seconds * FPS {
+            out.push(Plant { foot, begin: first as u32, end: last as u32 });
         }
         frame += 1;
     }

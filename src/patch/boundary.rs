@@ -77,3 +77,36 @@ pub fn nearest(motion: &Motion, frames: RangeInclusive<usize>, exemplars: &[Exem
     });
     candidates.min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::testing::{standing, walking};
+
+    #[test]
+    fn every_group_has_an_exemplar_near_its_own_poses_only() {
+        let (walk, stand) = (walking(4.0), standing(1.0));
+        let exemplars = exemplars(&[walk.clone(), stand.clone()]);
+        assert_eq!(
+            exemplars.iter().map(|e| e.phase).collect::<Vec<_>>(),
+            [Phase::WalkLeft, Phase::WalkRight, Phase::Stand]
+        );
+        for m in gait::moments(&walk, &GaitOptions::default()) {
+            let found = nearest(&walk, m.frame..=m.frame, &exemplars).unwrap();
+            assert_eq!(found.phase, m.phase);
+            assert!(found.distance < 0.03, "{found:?}");
+        }
+        assert_eq!(nearest(&stand, 0..=99, &exemplars).unwrap().phase, Phase::Stand);
+        let far: Vec<f32> = exemplars.iter().map(|e| distance(&stand, 15, e)).collect();
+        assert!(far[2] < 1e-4 && far[0] > 0.05 && far[1] > 0.05, "{far:?}");
+    }
+
+    #[test]
+    fn nothing_is_near_where_there_is_nothing() {
+        let exemplars = exemplars(&[standing(1.0)]);
+        assert_eq!(exemplars.len(), 1);
+        assert!(nearest(&standing(1.0), 500..=600, &exemplars).is_none());
+        assert!(nearest(&Motion::default(), 0..=10, &exemplars).is_none());
+        assert!(nearest(&standing(1.0), 0..=10, &[]).is_none());
+    }
+}

@@ -4,10 +4,12 @@
 //! ports becomes a patch, labelled by what it does (walk, turn, start, stop, idle). Longer stretches over one port in
 //! between are proposed for walks (two steps), since a whole cycle bends more gracefully than one step.
 
+use glam::Vec3;
+
 use super::boundary::{self, Boundary, Exemplar};
 use crate::motion::gait::{self, GaitOptions, Phase};
 use crate::motion::take::{TakePatch, TakePort, TakeRole};
-use crate::motion::{FPS, Motion};
+use crate::motion::{FPS, Motion, plants};
 
 /// What is proposed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +21,8 @@ pub struct ProposeOptions {
     /// A frame is a standing port if its pose is this near the exemplar, metres; default 0.075 (a mid-stance is 0.09
     /// from standing).
     pub stand_distance: f32,
+    /// and the hips move slower than this on the ground, m/s; default 0.35.
+    pub stand_speed: f32,
     /// Longest patch, seconds; default 4.
     pub max_seconds: f32,
     /// A walk that turns by more than this is labelled `turn`, radians; default 20 degrees.
@@ -31,6 +35,7 @@ impl Default for ProposeOptions {
             within: (0.0, f32::INFINITY),
             walk_distance: 0.10,
             stand_distance: 0.075,
+            stand_speed: 0.35,
             max_seconds: 4.0,
             turn: 20f32.to_radians(),
         }
@@ -69,7 +74,13 @@ fn walk_ports(motion: &Motion, exemplars: &[Exemplar], options: &ProposeOptions)
 /// Of every stretch of standing poses both ends, and the middle of a stretch that leads on to nothing else.
 fn stand_ports(motion: &Motion, exemplars: &[Exemplar], options: &ProposeOptions) -> Vec<Boundary> {
     let Some(stand) = exemplars.iter().find(|e| e.phase == Phase::Stand) else { return Vec::new() };
-    let all: Vec<f32> = (0..motion.len()).map(|f| boundary::distance(motion, f, stand)).collect();
+    // Walkers who pass through a stand-like pose are too fast; at the ends, where the poses' window is cut short, only
+    // the speed tells.
+    let hips: Vec<Vec3> = motion.path.points.iter().map(|p| Vec3::new(p.x, 0.0, p.y)).collect();
+    let speeds = plants::speeds(&hips, FPS);
+    let still = |f: usize| speeds[f] < options.stand_speed;
+    let far = |f: usize| if still(f) { boundary::distance(motion, f, stand) } else { f32::INFINITY };
+    let all: Vec<f32> = (0..motion.len()).map(far).collect();
     let mut found: Vec<Boundary> = Vec::new();
     let mut frame = 0;
     while frame < all.len() {
@@ -132,4 +143,38 @@ fn describe(motion: &Motion, from: Boundary, to: Boundary, options: &ProposeOpti
         _ => "walk",
     };
     ((0.4..=options.max_seconds).contains(&seconds), label)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::testing::{standing, walking};
+
+    #[test]
+    fn a_walk_is_cut_into_steps_and_cycles() {
+        let walk = walking(4.0);
+        let exemplars = boundary::exemplars(&[walk.clone(), standing(1.0)]);
+        let (ports, patches) = single("w", &walk, &exemplars, &ProposeOptions::default());
+        assert!(ports.len() >= 6, "{ports:?}");
+        assert_eq!(patches.len(), 2 * ports.len() - 3, "{ports:?}");
+        for p in &patches {
+            assert_eq!(p.labels, ["walk"]);
+            let pose = |time: f32| ports.iter().find(|port| port.time == time).map(|port| port.pose.as_str());
+            let (begin, end) = (p.roles[0].begin, p.roles[0].end);
+            let one_step = pose(begin).unwrap() != pose(end).unwrap();
+            assert!(((end - begin) - if one_step { 0.533 } else { 1.067 }).abs() < 0.05, "{p:?}");
+        }
+        let names: std::collections::BTreeSet<&String> = patches.iter().map(|p| &p.name).collect();
+        assert_eq!(names.len(), patches.len());
+    }
+
+    #[test]
+    fn standing_is_one_idle_and_the_window_holds() {
+        let stand = standing(2.0);
+        let exemplars = boundary::exemplars(&[stand.clone()]);
+        let (ports, patches) = single("s", &stand, &exemplars, &ProposeOptions::default());
+        assert_eq!((ports.len(), patches.len(), patches[0].labels[0].as_str()), (2, 1, "idle"));
+        let options = ProposeOptions { within: (0.5, 1.0), ..Default::default() };
+        assert!(single("s", &stand, &exemplars, &options).0.is_empty());
+    }
 }

@@ -6,5 +6,6 @@ mod read;
 mod read_tests;
 mod write;
 
+pub(crate) use read::MIN_FPS;
 pub use read::{load, read};
 pub use write::write;

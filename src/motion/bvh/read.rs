@@ -8,6 +8,10 @@ use super::hierarchy::{self, Channel, Hierarchy, Line, bad, number, quoted};
 use crate::motion::Clip;
 use crate::{Error, Result};
 
+/// Slowest rate taken for a capture's: later stages sample at 30 per second, and a few frames claimed to last for days
+/// must not fill the memory.
+pub(crate) const MIN_FPS: f32 = 1.0;
+
 /// Reads the BVH file at `path`; the clip is named after the file's stem. Lengths stay in the file's units.
 ///
 /// # Errors
@@ -26,7 +30,7 @@ pub fn load(path: &Path) -> Result<Clip> {
 ///
 /// # Errors
 /// One message with the line: not text, not a hierarchy, an unknown word or channel, a root that cannot move,
-/// no frames, a frame time that is not positive, a frame with too few or too many or non-finite numbers,
+/// no frames, a frame time that is not above 0 and at most a second, a frame with too few or too many or non-finite numbers,
 /// fewer or more frames than promised.
 pub fn read(bytes: &[u8]) -> Result<Clip> {
     let text = std::str::from_utf8(bytes).map_err(|e| {
@@ -62,10 +66,10 @@ fn frame_rate(line: Option<Line>, before: usize) -> Result<f32> {
     let (at, value) = field(line, "Frame Time", before)?;
     let seconds = number(value, at)?;
     let fps = 1.0 / seconds;
-    if seconds > 0.0 && fps.is_finite() && fps > 0.0 {
+    if (MIN_FPS..f32::INFINITY).contains(&fps) {
         return Ok(fps);
     }
-    Err(bad(at, format!("expected a positive frame time in seconds, found {}", quoted(value))))
+    Err(bad(at, format!("expected a frame time above 0 and at most 1 second, found {}", quoted(value))))
 }
 
 fn read_frames<'a>(

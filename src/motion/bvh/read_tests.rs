@@ -109,10 +109,11 @@ fn promised_frames_that_are_not_there() {
 }
 
 #[test]
-fn frame_time_must_be_positive() {
-    refused("0.0333333", "0", 18, "expected a positive frame time");
-    refused("0.0333333", "-0.01", 18, "expected a positive frame time");
-    refused("0.0333333", "1e-45", 18, "expected a positive frame time");
+fn frame_time_must_be_above_zero_and_no_eternity() {
+    refused("0.0333333", "0", 18, "expected a frame time above 0");
+    refused("0.0333333", "-0.01", 18, "expected a frame time above 0");
+    refused("0.0333333", "1e-45", 18, "expected a frame time above 0");
+    refused("0.0333333", "1e9", 18, "at most 1 second");
 }
 
 #[test]
@@ -145,9 +146,7 @@ fn a_deep_chain_costs_no_call_stack() {
     let joint = "JOINT j { OFFSET 0 1 0 CHANNELS 1 Xrotation\n";
     let root = "HIERARCHY ROOT r { OFFSET 0 0 0 CHANNELS 4 Xposition Yposition Zposition Yrotation\n";
     let frame = "0 ".repeat(n + 4);
-    let text =
-        [root, &joint.repeat(n), &"}".repeat(1), &"\n}".repeat(n), "\nMOTION\nFrames: 1\nFrame Time: 1\n", &frame]
-            .concat();
+    let text = [root, &joint.repeat(n), &"}\n".repeat(n + 1), "\nMOTION\nFrames: 1\nFrame Time: 1\n", &frame].concat();
     assert_eq!(read(text.as_bytes()).unwrap().skeleton.joints.len(), n + 1);
 }
 

@@ -1,10 +1,11 @@
 //! Feet on the floor: shifts a clip up or down so that planted feet stand at the canonical height, and bends the
-//! toes of rigs that have none.
+//! toes of rigs that have none. Rest poses do not say how the sole lies (and some files carry one person's rotations
+//! on another's bones), so the soles are levelled by where feet stand still.
 
 use glam::{Quat, Vec3};
 
 use crate::motion::skeleton::joint::*;
-use crate::motion::{Clip, JOINT_COUNT, plants};
+use crate::motion::{Clip, JOINT_COUNT, canonical, plants};
 
 /// Height of the ball of a planted foot, metres.
 pub(super) const PLANTED: f32 = 0.02;
@@ -12,13 +13,45 @@ pub(super) const PLANTED: f32 = 0.02;
 /// Speed (m/s) below which a ball is taken to stand.
 const STANDING: f32 = 0.15;
 
+/// Largest correction of a sole, radians.
+const MAX_LEVELLING: f32 = 25.0 / 180.0 * std::f32::consts::PI;
+
+/// How far a toe's tip may sink into the floor, metres.
+const TOE_SLACK: f32 = 0.005;
+
 /// Shifts a clip on the canonical skeleton so that standing balls are at [`PLANTED`]; `toes` says that toes have no
 /// motion of their own and are to bend on the floor.
 pub(super) fn settle(clip: &mut Clip, toes: bool) {
+    for foot in [LEFT_FOOT, RIGHT_FOOT] {
+        level_sole(clip, foot);
+    }
     let shift = PLANTED - floor_height(clip);
     clip.root.iter_mut().for_each(|p| p.y += shift);
     if toes {
         bend_toes(clip);
+    }
+}
+
+/// Pitches a foot by a constant, so that where ankle and ball stand still the sole is level: there the median pitch of
+/// the line from ankle to ball becomes that of the canonical rest pose. Nothing is done where the foot never stands
+/// for a quarter of a second in all, or would have to turn by more than 25 degrees (someone on tiptoe).
+fn level_sole(clip: &mut Clip, foot: usize) {
+    let (ankles, balls) = (clip.trajectory(foot), clip.trajectory(foot + 1));
+    let speeds = [&ankles, &balls].map(|points| plants::speeds(points, clip.fps));
+    let lowest = balls.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+    let pitch = |offset: Vec3| f32::atan2(-offset.y, Vec3::new(offset.x, 0.0, offset.z).length());
+    let stands = |&f: &usize| speeds.iter().all(|s| s[f] < STANDING) && balls[f].y < lowest + 0.15;
+    let mut pitches: Vec<f32> = (0..clip.frames()).filter(stands).map(|f| pitch(balls[f] - ankles[f])).collect();
+    if (pitches.len() as f32) < 0.25 * clip.fps {
+        return;
+    }
+    pitches.sort_by(f32::total_cmp);
+    let error = pitch(clip.skeleton.joints[foot + 1].offset) - pitches[pitches.len() / 2];
+    if error.abs() > MAX_LEVELLING {
+        return;
+    }
+    for pose in clip.rotations.chunks_exact_mut(JOINT_COUNT) {
+        pose[foot] *= Quat::from_rotation_x(error);
     }
 }
 
@@ -47,14 +80,18 @@ fn bend_toes(clip: &mut Clip) {
     for frame in 0..clip.frames() {
         clip.globals(frame, &mut globals);
         for toe in [LEFT_TOE, RIGHT_TOE] {
-            let (ball, foot) = globals[toe];
-            let tip = clip.skeleton.joints[toe].tip.expect("toes have tips");
-            // In the toe's frame the tip may sink by its height above the floor and no more.
-            let sink = (foot * tip).y.min(0.0) + (ball.y - PLANTED).max(0.0);
-            if sink < 0.0 {
-                let lift = (-sink / tip.length()).clamp(0.0, 1.0).asin();
-                clip.rotations[frame * JOINT_COUNT + toe] *= Quat::from_axis_angle(Vec3::X, -lift);
-            }
+            clip.rotations[frame * JOINT_COUNT + toe] *= lift_toe(globals[toe].0, globals[toe].1);
         }
     }
+}
+
+/// The turn in the toe's own frame that keeps its tip as high as the ball of a planted foot: none if it is. A toe
+/// that sinks by up to [`TOE_SLACK`] is left alone.
+pub(super) fn lift_toe(ball: Vec3, toe: Quat) -> Quat {
+    let tip = canonical().joints[LEFT_TOE].tip.expect("toes have tips");
+    let sink = (toe * tip).y.min(0.0) + (ball.y - PLANTED).max(0.0) + TOE_SLACK;
+    if sink >= 0.0 {
+        return Quat::IDENTITY;
+    }
+    Quat::from_rotation_x(-(-sink / tip.length()).clamp(0.0, 1.0).asin())
 }

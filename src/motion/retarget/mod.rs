@@ -5,8 +5,10 @@
 //!    people of one take share one scale on the ground, so that they still meet.
 //! 3. Floor: shifted so that the planted ball of the foot is 0.02 m above it.
 //! 4. [`build`]: sampled at 30 fps, with a smooth heading.
+//! 5. Feet: planted feet are detected and pinned.
 
 pub mod build;
+mod feet;
 mod floor;
 mod names;
 mod rig;
@@ -50,6 +52,7 @@ pub fn take(clips: &[Clip]) -> Result<Vec<Motion>> {
         floor::settle(&mut canonical_clip, rig.joints[LEFT_TOE].is_none());
         let mut motion = build::motion(&canonical_clip);
         motion.plants = plants::detect(&motion, &PlantOptions::default());
+        feet::pin(&mut motion);
         Ok(motion)
     };
     clips.iter().zip(&rigs).zip(&ratios).map(person).collect()

@@ -6,7 +6,7 @@ use super::{names::FAMILIES, take, to_canonical};
 use crate::motion::skeleton::joint::*;
 use crate::motion::{Clip, FPS, JOINT_COUNT, canonical};
 
-/// A person who turns about and swings all limbs, on the canonical skeleton at 30 fps.
+/// A person who glides, turns about and swings all limbs, on the canonical skeleton at 30 fps; no foot is ever planted.
 fn lively() -> Clip {
     let skeleton = canonical().clone();
     let frames = 40;
@@ -14,7 +14,7 @@ fn lively() -> Clip {
     let mut rotations = Vec::new();
     for frame in 0..frames {
         let t = frame as f32 / FPS;
-        root.push(Vec3::new(0.4 * t, 0.935, t));
+        root.push(Vec3::new(0.4 * t, 0.935, 3.0 * t));
         rotations.push(Quat::from_rotation_y(0.8 * t + 0.1));
         for joint in 1..JOINT_COUNT {
             let phase = t * 3.0 + joint as f32;
