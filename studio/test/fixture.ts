@@ -183,7 +183,7 @@ function plan(people: number, last: number): { plans: Plan[]; instances: number[
       plans.push({ states, fragments: chainOf(instances, meeting, role, from, to, last, plans.length) });
     }
   }
-  return { plans, instances, reach: columns * 2 + 4 };
+  return { plans, instances, reach: columns * 2 + 2.6 };
 }
 
 function chainOf(

@@ -165,12 +165,12 @@ function timePlane(region: readonly Vec2[]): Group {
     geometry.setAttribute("position", new Float32BufferAttribute(triangles, 3));
     const mesh = new Mesh(
       geometry,
-      new MeshBasicMaterial({ color, transparent: true, opacity, depthWrite: false, side: 2 }),
+      new MeshBasicMaterial({ color, transparent: true, opacity, depthWrite: false, side: 2, toneMapped: false }),
     );
     mesh.renderOrder = 1;
     group.add(mesh);
   };
-  part(fan(region, 0), 0.5, "#ffffff");
+  part(fan(region, 0), 0.3, "#ffffff");
   part(band(region, 0.05, 0.002), 0.95, "#e2702a");
   return group;
 }
@@ -194,7 +194,7 @@ void main() {
   vec3 n = normalize(vNormal);
   float light = 0.62 + 0.38 * clamp(dot(n, normalize(vec3(-0.3, 0.7, 0.6))), 0.0, 1.0);
   // What is still to come is paler.
-  float pale = (vHeight > now ? 0.5 : 0.0) + vQuiet * 0.55;
+  float pale = (vHeight > now ? 0.34 : 0.0) + vQuiet * 0.55;
   gl_FragColor = vec4(mix(vTint * light, fog, min(pale, 0.8)), 1.0);
   #include <colorspace_fragment>
 }`,
@@ -218,7 +218,7 @@ void main() {
 uniform float now; varying vec3 vTint, vNormal, vView; varying float vHeight;
 void main() {
   float edge = 1.0 - abs(dot(normalize(vNormal), normalize(vView)));
-  float alpha = (0.12 + 0.22 * edge * edge) * (vHeight > now ? 0.55 : 1.0);
+  float alpha = (0.17 + 0.3 * edge * edge) * (vHeight > now ? 0.6 : 1.0);
   gl_FragColor = vec4(vTint, alpha);
   #include <colorspace_fragment>
 }`,

@@ -1,6 +1,6 @@
 /** All colours of the picture. */
 
-import { Color } from "three";
+import { Color, SRGBColorSpace } from "three";
 
 /** Colours of a theme; the page's own are in style.css. */
 export interface Theme {
@@ -27,7 +27,7 @@ export const LIGHT: Theme = {
   border: "#6f6a60",
   obstacle: "#cfcac0",
   sky: "#f4f6ff",
-  bounce: "#b9a48c",
+  bounce: "#c9b7a1",
   sun: "#fff3df",
   skyStrength: 1.55,
   sunStrength: 2.3,
@@ -61,8 +61,8 @@ const SOLE = ["#dedad2", "#2a2725", "#e9e6df"];
 /** Evenly different hues of one calm family, for kinds and instances. */
 export function categorical(index: number): string {
   const hue = (0.055 + index * 0.381966) % 1;
-  const light = [0.55, 0.47, 0.62][index % 3];
-  return `#${new Color().setHSL(hue, 0.52, light).getHexString()}`;
+  const light = [0.6, 0.5, 0.67][index % 3];
+  return `#${new Color().setHSL(hue, 0.55, light, SRGBColorSpace).getHexString()}`;
 }
 
 /** sRGB bytes of a CSS colour. */

@@ -80,8 +80,8 @@ export class Picture {
     this.store.set("follow", false);
     const { center, radius } = this.stage;
     if (view === "loom") {
-      const middle = center.clone().setY(this.drawn.loom.height * 0.47);
-      this.cameras.aim(view, middle, Math.hypot(radius, this.drawn.loom.height / 2) * 1.04, fly);
+      const middle = center.clone().setY(this.drawn.loom.height * 0.43);
+      this.cameras.aim(view, middle, Math.hypot(radius, this.drawn.loom.height / 2) * 1.12, fly);
     } else {
       this.cameras.aim(view, view === "front" ? center.clone().setY(0.8) : center, radius, fly);
     }
