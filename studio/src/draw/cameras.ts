@@ -36,7 +36,7 @@ export class Cameras {
     const fov = (this.camera.fov * Math.PI) / 360;
     const tight = Math.min(Math.tan(fov), Math.tan(fov) * this.camera.aspect);
     const distance =
-      (radius * (view === "top" ? 0.98 : view === "front" ? 0.66 : view === "persp" ? 0.8 : 0.92)) / tight;
+      (radius * (view === "top" ? 0.98 : view === "front" ? 0.66 : view === "persp" ? 0.82 : 0.92)) / tight;
     this.controls.maxDistance = Math.max(distance * 4, 30);
     const position = center.clone().addScaledVector(DIRECTIONS[view], distance);
     if (fly) {

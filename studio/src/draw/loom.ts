@@ -60,7 +60,7 @@ export class Loom {
   }
 
   private makeThreads(crowd: Crowd, size: number): Mesh {
-    const made = threads(crowd, this.scale / crowd.fps, size * 0.0045);
+    const made = threads(crowd, this.scale / crowd.fps, size * 0.0055);
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new Float32BufferAttribute(made.positions, 3));
     geometry.setAttribute("normal", new Float32BufferAttribute(made.normals, 3));
@@ -109,8 +109,8 @@ export class Loom {
         places.push(new Matrix4().makeTranslation(crowd.root[at], y, crowd.root[at + 2]));
       }
     }
-    const dot = new SphereGeometry(size * 0.0075, 10, 8);
-    const mesh = new InstancedMesh(dot, new MeshBasicMaterial({ color: "#2c2a27" }), places.length);
+    const dot = new SphereGeometry(size * 0.0062, 10, 8);
+    const mesh = new InstancedMesh(dot, new MeshBasicMaterial({ color: "#45413a" }), places.length);
     for (const [i, place] of places.entries()) mesh.setMatrixAt(i, place);
     mesh.frustumCulled = false;
     return mesh;

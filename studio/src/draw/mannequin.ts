@@ -316,13 +316,13 @@ function head(mesh: MeshBuilder, ids: Ids): void {
   }
   hair(mesh, skull);
   const long = [
-    [1.7, 0.045, 0.02, -0.07], [1.67, 0.064, 0.034, -0.069], [1.63, 0.076, 0.042, -0.066], [1.585, 0.079, 0.043, -0.066],
-    [1.54, 0.077, 0.04, -0.068], [1.5, 0.072, 0.036, -0.073], [1.465, 0.06, 0.03, -0.079], [1.44, 0.04, 0.02, -0.084],
-    [1.43, 0.018, 0.01, -0.086],
+    [1.69, 0.045, 0.02, -0.06], [1.665, 0.062, 0.03, -0.062], [1.635, 0.075, 0.043, -0.066], [1.59, 0.079, 0.045, -0.067],
+    [1.54, 0.077, 0.041, -0.07], [1.5, 0.072, 0.037, -0.074], [1.465, 0.06, 0.03, -0.08], [1.442, 0.042, 0.021, -0.084],
+    [1.433, 0.018, 0.01, -0.086],
   ]; // biome-ignore format: a table
   mesh.loft(
-    long.map(([y, w, d, z]) => level(y, w, d, z, Part.LongHair, skull, 2.4)),
-    10,
+    long.map(([y, w, d, z]) => level(y, w, d, z, Part.LongHair, skull)),
+    16,
   );
 }
 
@@ -331,7 +331,7 @@ function hair(mesh: MeshBuilder, skull: Weights): void {
   const center: Vec3 = [0, 1.655, 0.006];
   const radii: Vec3 = [0.0835, 0.108, 0.112];
   const tilt = 0.62;
-  const rows = [6, 20, 38, 56, 74, 90, 103, 106];
+  const rows = [5, 16, 30, 45, 60, 75, 90, 103, 106];
   const rings = rows.map((degrees, i): Ring => {
     const polar = (degrees * Math.PI) / 180;
     // The last ring turns inwards, so that the rim has a thickness.
@@ -345,5 +345,5 @@ function hair(mesh: MeshBuilder, skull: Weights): void {
       weights: skull,
     };
   });
-  mesh.loft(rings, 14);
+  mesh.loft(rings, 20);
 }

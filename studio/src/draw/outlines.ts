@@ -51,7 +51,7 @@ export class PatchOutlines {
     };
     for (const hull of all) {
       add(hull, fan(hull.outline, 0), hull.people > 1 ? 0.2 : 0.05);
-      add(hull, band(hull.outline, hull.people > 1 ? 0.03 : 0.014, 0), hull.people > 1 ? 0.95 : 0.55);
+      add(hull, band(hull.outline, hull.people > 1 ? 0.024 : 0.012, 0), hull.people > 1 ? 0.95 : 0.55);
     }
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new Float32BufferAttribute(positions, 3));

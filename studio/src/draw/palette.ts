@@ -29,8 +29,8 @@ export const LIGHT: Theme = {
   sky: "#f4f6ff",
   bounce: "#c9b7a1",
   sun: "#fff3df",
-  skyStrength: 1.55,
-  sunStrength: 2.3,
+  skyStrength: 1.85,
+  sunStrength: 1.75,
 };
 
 export const DARK: Theme = {

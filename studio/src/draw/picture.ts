@@ -83,7 +83,12 @@ export class Picture {
       const middle = center.clone().setY(this.drawn.loom.height * 0.43);
       this.cameras.aim(view, middle, Math.hypot(radius, this.drawn.loom.height / 2) * 1.12, fly);
     } else {
-      this.cameras.aim(view, view === "front" ? center.clone().setY(0.8) : center, radius, fly);
+      this.cameras.aim(
+        view,
+        center.clone().setY(view === "front" ? 0.2 : view === "persp" ? -radius * 0.05 : 0),
+        radius,
+        fly,
+      );
     }
     this.invalidate();
   }
@@ -126,7 +131,7 @@ export class Picture {
     this.followed.setScalar(Number.NaN);
     if (!on || person === null || !this.drawn) return;
     const at = this.placeOf(person);
-    if (at) this.cameras.close(at, 5.2, true);
+    if (at) this.cameras.close(at, 6.2, true);
   }
 
   private follow(): void {

@@ -8,9 +8,9 @@ import {
   Float32BufferAttribute,
   Group,
   HemisphereLight,
+  LinearToneMapping,
   Mesh,
   MeshStandardMaterial,
-  NeutralToneMapping,
   PCFShadowMap,
   PlaneGeometry,
   Scene,
@@ -44,8 +44,8 @@ export class Stage {
     private theme: Theme = LIGHT,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
-    this.renderer.toneMapping = NeutralToneMapping;
-    this.renderer.toneMappingExposure = 0.95;
+    this.renderer.toneMapping = LinearToneMapping;
+    this.renderer.toneMappingExposure = 1;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.info.autoReset = false;
