@@ -204,13 +204,11 @@ describe("a click", () => {
 
   it("follows", async () => {
     await open(`paused=1&t=${end * 0.2}&person=${somebody(end * 0.2)}&follow=1`);
-    await page.waitForTimeout(1500);
     const place = () => page.evaluate((p) => window.crowdquilt.project(p), somebody(end * 0.2));
     const before = await place();
     await seek(end * 0.2 + 1);
-    await page.waitForTimeout(300);
     const after = await place();
-    expect(Math.hypot(after!.x - before!.x, after!.y - before!.y)).toBeLessThan(12);
+    expect(Math.hypot(after!.x - before!.x, after!.y - before!.y)).toBeLessThan(2);
   });
 });
 
@@ -251,7 +249,8 @@ describe("the cost of a picture", () => {
     console.log(
       `JavaScript per picture: 12 people ${few.ms.toFixed(2)} ms, 200 people ${many.ms.toFixed(2)} ms; ${many.drawCalls} draw calls`,
     );
-    expect(many.drawCalls).toBe(few.drawCalls);
+    // Obstacles out of sight are not drawn: fewer calls are fine.
+    expect(many.drawCalls).toBeLessThanOrEqual(few.drawCalls);
     expect(many.drawCalls).toBeLessThan(20);
     expect(many.ms).toBeLessThan(few.ms * 1.5 + 1);
   });

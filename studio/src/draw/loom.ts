@@ -20,7 +20,7 @@ import {
 import { bounds } from "../crowd/hull";
 import { type Crowd, duration, type Vec2 } from "../crowd/model";
 import type { Hull } from "./outlines";
-import { categorical } from "./palette";
+import { categorical, LIGHT } from "./palette";
 import { band, fan } from "./strips";
 import { threads } from "./threads";
 
@@ -60,7 +60,9 @@ export class Loom {
   }
 
   private makeThreads(crowd: Crowd, size: number): Mesh {
-    const made = threads(crowd, this.scale / crowd.fps, size * 0.0055);
+    // The more people, the thinner the threads: the cloth stays open enough to look into.
+    const thin = Math.min(Math.max(Math.sqrt(20 / crowd.characters.length), 0.35), 1);
+    const made = threads(crowd, this.scale / crowd.fps, size * 0.0055 * thin);
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new Float32BufferAttribute(made.positions, 3));
     geometry.setAttribute("normal", new Float32BufferAttribute(made.normals, 3));
@@ -109,7 +111,8 @@ export class Loom {
         places.push(new Matrix4().makeTranslation(crowd.root[at], y, crowd.root[at + 2]));
       }
     }
-    const dot = new SphereGeometry(size * 0.0062, 10, 8);
+    const radius = size * 0.0062 * Math.min(Math.max(Math.sqrt(150 / Math.max(places.length, 1)), 0.35), 1);
+    const dot = new SphereGeometry(radius, places.length > 500 ? 6 : 10, places.length > 500 ? 4 : 8);
     const mesh = new InstancedMesh(dot, new MeshBasicMaterial({ color: "#45413a" }), places.length);
     for (const [i, place] of places.entries()) mesh.setMatrixAt(i, place);
     mesh.frustumCulled = false;
@@ -177,7 +180,7 @@ function timePlane(region: readonly Vec2[]): Group {
 
 function threadMaterial(): ShaderMaterial {
   return new ShaderMaterial({
-    uniforms: { now: { value: 0 }, chosen: { value: -1 }, fog: { value: new Color("#e9e7e2") } },
+    uniforms: { now: { value: 0 }, chosen: { value: -1 }, fog: { value: new Color(LIGHT.background) } },
     vertexShader: /* glsl */ `
 attribute vec3 tint; attribute float person; uniform float chosen;
 varying vec3 vTint, vNormal; varying float vHeight, vQuiet;

@@ -2,10 +2,9 @@
 
 import { Color, SRGBColorSpace } from "three";
 
-/** Colours of a theme; the page's own are in style.css. */
+/** Colours and lights of the scene; the page's own are in style.css. */
 export interface Theme {
   background: string;
-  horizon: string;
   ground: string;
   region: string;
   line: string;
@@ -20,7 +19,6 @@ export interface Theme {
 
 export const LIGHT: Theme = {
   background: "#e9e7e2",
-  horizon: "#f3f1ed",
   ground: "#e4e1db",
   region: "#f4f2ee",
   line: "#b9b4a9",
@@ -31,21 +29,6 @@ export const LIGHT: Theme = {
   sun: "#fff3df",
   skyStrength: 1.85,
   sunStrength: 1.75,
-};
-
-export const DARK: Theme = {
-  background: "#14171c",
-  horizon: "#1b1f26",
-  ground: "#171b20",
-  region: "#20252c",
-  line: "#3a424d",
-  border: "#8793a3",
-  obstacle: "#39414c",
-  sky: "#b9c8e6",
-  bounce: "#3d3530",
-  sun: "#fff0dc",
-  skyStrength: 1.25,
-  sunStrength: 2.2,
 };
 
 const SKIN = ["#f2c9ac", "#e5b08d", "#d49a74", "#b97a56", "#8d5a3c", "#6a422d"];

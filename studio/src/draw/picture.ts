@@ -117,7 +117,7 @@ export class Picture {
     people.uniforms.colorMode.value = COLOR_MODES.indexOf(store.get("color"));
     people.uniforms.chosen.value = store.get("person") ?? -1;
     people.update(time, lift);
-    outlines.update(time, lift, store.get("outlines"));
+    outlines.update(time, lift, store.get("outlines"), store.get("color"));
     loom.group.visible = inLoom;
     if (inLoom) loom.update(time, store.get("person") ?? -1);
     people.body.castShadow = !inLoom;
@@ -131,7 +131,7 @@ export class Picture {
     this.followed.setScalar(Number.NaN);
     if (!on || person === null || !this.drawn) return;
     const at = this.placeOf(person);
-    if (at) this.cameras.close(at, 6.2, true);
+    if (at) this.cameras.close(at, 6.2, this.stats.pictures > 0);
   }
 
   private follow(): void {
