@@ -1,5 +1,5 @@
 /**
- * Pictures of a crowd from the built page: `npm run shots -- FOLDER [QUERY ...]`, each query a page's parameters.
+ * Pictures of a crowd from the built page: SHOTS="folder query ..." npm run shots; each query is the page's parameters.
  * CROWD=path takes a real crowd file instead of the synthetic one; LOOK=x,y,z,tx,ty,tz places the camera.
  */
 
@@ -8,7 +8,7 @@ import { fixtureCrowd } from "../test/fixture";
 import { findChrome, launch } from "./browser";
 import { serve } from "./server";
 
-const [folder, ...queries] = (process.env.SHOTS ?? "").split(" ");
+const [folder, ...queries] = (process.env.SHOTS ?? "shots t=3 t=3&view=loom").split(" ");
 const server = await serve("dist");
 const crowd = process.env.CROWD ? await readFile(process.env.CROWD) : new Uint8Array(fixtureCrowd({}).bytes);
 server.data.set("crowd.crowd", crowd);

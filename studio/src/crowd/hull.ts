@@ -4,7 +4,9 @@ import type { Vec2 } from "./model";
 
 /** Convex hull, counter-clockwise with x right and z up (Andrew's monotone chain). O(n log n). */
 export function convexHull(points: readonly Vec2[]): Vec2[] {
-  const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const sorted = [...points]
+    .sort((a, b) => a[0] - b[0] || a[1] - b[1])
+    .filter((p, i, all) => i === 0 || p[0] !== all[i - 1][0] || p[1] !== all[i - 1][1]);
   if (sorted.length < 3) return sorted;
   const half = (source: readonly Vec2[]): Vec2[] => {
     const out: Vec2[] = [];
@@ -15,8 +17,7 @@ export function convexHull(points: readonly Vec2[]): Vec2[] {
     out.pop();
     return out;
   };
-  const hull = [...half(sorted), ...half(sorted.reverse())];
-  return hull.length > 0 ? hull : [sorted[0]];
+  return [...half(sorted), ...half(sorted.reverse())];
 }
 
 /** The hull of discs of `radius` around the points: an outline that keeps clear of the paths, with round corners. */

@@ -8,7 +8,7 @@ import type { View } from "../store";
 const DIRECTIONS: Record<View, Vector3> = {
   persp: new Vector3(0.62, 0.62, 1).normalize(),
   top: new Vector3(0, 1, 0.0005).normalize(),
-  front: new Vector3(0, 0.12, 1).normalize(),
+  front: new Vector3(0, 0.16, 1).normalize(),
   loom: new Vector3(0.72, 0.34, 1).normalize(),
 };
 
@@ -35,7 +35,8 @@ export class Cameras {
   aim(view: View, center: Vector3, radius: number, fly: boolean): void {
     const fov = (this.camera.fov * Math.PI) / 360;
     const tight = Math.min(Math.tan(fov), Math.tan(fov) * this.camera.aspect);
-    const distance = (radius * (view === "top" ? 0.98 : view === "front" ? 0.8 : 0.92)) / tight;
+    const distance =
+      (radius * (view === "top" ? 0.98 : view === "front" ? 0.66 : view === "persp" ? 0.82 : 0.92)) / tight;
     this.controls.maxDistance = Math.max(distance * 4, 30);
     const position = center.clone().addScaledVector(DIRECTIONS[view], distance);
     if (fly) {

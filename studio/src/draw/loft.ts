@@ -24,6 +24,8 @@ export class MeshBuilder {
   readonly weights: number[] = [];
   readonly parts: number[] = [];
   readonly indices: number[] = [];
+  /** First vertex of every loft. */
+  private readonly starts: number[] = [];
 
   /** `detail` scales the number of sides of all lofts. */
   constructor(private readonly detail: number) {}
@@ -33,6 +35,7 @@ export class MeshBuilder {
     const n = Math.max(5, Math.round(sides * this.detail));
     const first = this.positions.length / 3;
     const firstIndex = this.indices.length;
+    this.starts.push(first);
     let previous = -1;
     for (const [i, ring] of rings.entries()) {
       if (i === 0) this.cap(ring, n, true);
@@ -48,6 +51,31 @@ export class MeshBuilder {
     }
     this.cap(rings[rings.length - 1], n, false, previous);
     this.smooth(first, firstIndex);
+  }
+
+  /**
+   * Softens the creases where lofts of the same part run into each other (sleeve and shirt, leg and seat): within
+   * `reach` metres, normals lean towards those of the other loft.
+   */
+  blendNormals(reach: number): void {
+    const p = this.positions;
+    const total = p.length / 3;
+    const loft = new Uint16Array(total);
+    for (const start of this.starts) for (let v = start; v < total; v++) loft[v]++;
+    const before = [...this.normals];
+    for (let v = 0; v < total; v++) {
+      let [nearest, other] = [reach, -1];
+      for (let w = 0; w < total; w++) {
+        if (loft[w] === loft[v] || this.parts[w] !== this.parts[v]) continue;
+        const d = Math.hypot(p[v * 3] - p[w * 3], p[v * 3 + 1] - p[w * 3 + 1], p[v * 3 + 2] - p[w * 3 + 2]);
+        if (d < nearest) [nearest, other] = [d, w];
+      }
+      if (other < 0) continue;
+      const share = 0.5 * (1 - nearest / reach);
+      const n = [0, 1, 2].map((k) => before[v * 3 + k] * (1 - share) + before[other * 3 + k] * share);
+      const length = Math.hypot(...n) || 1;
+      for (let k = 0; k < 3; k++) this.normals[v * 3 + k] = n[k] / length;
+    }
   }
 
   private ring(ring: Ring, n: number): number {

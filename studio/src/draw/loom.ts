@@ -20,7 +20,7 @@ import {
 import { bounds } from "../crowd/hull";
 import { type Crowd, duration, type Vec2 } from "../crowd/model";
 import type { Hull } from "./outlines";
-import { categorical } from "./palette";
+import { categorical, LIGHT } from "./palette";
 import { band, fan } from "./strips";
 import { threads } from "./threads";
 
@@ -60,7 +60,9 @@ export class Loom {
   }
 
   private makeThreads(crowd: Crowd, size: number): Mesh {
-    const made = threads(crowd, this.scale / crowd.fps, size * 0.0045);
+    // The more people, the thinner the threads: the cloth stays open enough to look into.
+    const thin = Math.min(Math.max(Math.sqrt(20 / crowd.characters.length), 0.35), 1);
+    const made = threads(crowd, this.scale / crowd.fps, size * 0.0055 * thin);
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new Float32BufferAttribute(made.positions, 3));
     geometry.setAttribute("normal", new Float32BufferAttribute(made.normals, 3));
@@ -109,8 +111,9 @@ export class Loom {
         places.push(new Matrix4().makeTranslation(crowd.root[at], y, crowd.root[at + 2]));
       }
     }
-    const dot = new SphereGeometry(size * 0.0075, 10, 8);
-    const mesh = new InstancedMesh(dot, new MeshBasicMaterial({ color: "#2c2a27" }), places.length);
+    const radius = size * 0.0062 * Math.min(Math.max(Math.sqrt(150 / Math.max(places.length, 1)), 0.35), 1);
+    const dot = new SphereGeometry(radius, places.length > 500 ? 6 : 10, places.length > 500 ? 4 : 8);
+    const mesh = new InstancedMesh(dot, new MeshBasicMaterial({ color: "#45413a" }), places.length);
     for (const [i, place] of places.entries()) mesh.setMatrixAt(i, place);
     mesh.frustumCulled = false;
     return mesh;
@@ -165,19 +168,19 @@ function timePlane(region: readonly Vec2[]): Group {
     geometry.setAttribute("position", new Float32BufferAttribute(triangles, 3));
     const mesh = new Mesh(
       geometry,
-      new MeshBasicMaterial({ color, transparent: true, opacity, depthWrite: false, side: 2 }),
+      new MeshBasicMaterial({ color, transparent: true, opacity, depthWrite: false, side: 2, toneMapped: false }),
     );
     mesh.renderOrder = 1;
     group.add(mesh);
   };
-  part(fan(region, 0), 0.5, "#ffffff");
+  part(fan(region, 0), 0.3, "#ffffff");
   part(band(region, 0.05, 0.002), 0.95, "#e2702a");
   return group;
 }
 
 function threadMaterial(): ShaderMaterial {
   return new ShaderMaterial({
-    uniforms: { now: { value: 0 }, chosen: { value: -1 }, fog: { value: new Color("#e9e7e2") } },
+    uniforms: { now: { value: 0 }, chosen: { value: -1 }, fog: { value: new Color(LIGHT.background) } },
     vertexShader: /* glsl */ `
 attribute vec3 tint; attribute float person; uniform float chosen;
 varying vec3 vTint, vNormal; varying float vHeight, vQuiet;
@@ -194,7 +197,7 @@ void main() {
   vec3 n = normalize(vNormal);
   float light = 0.62 + 0.38 * clamp(dot(n, normalize(vec3(-0.3, 0.7, 0.6))), 0.0, 1.0);
   // What is still to come is paler.
-  float pale = (vHeight > now ? 0.5 : 0.0) + vQuiet * 0.55;
+  float pale = (vHeight > now ? 0.34 : 0.0) + vQuiet * 0.55;
   gl_FragColor = vec4(mix(vTint * light, fog, min(pale, 0.8)), 1.0);
   #include <colorspace_fragment>
 }`,
@@ -218,7 +221,7 @@ void main() {
 uniform float now; varying vec3 vTint, vNormal, vView; varying float vHeight;
 void main() {
   float edge = 1.0 - abs(dot(normalize(vNormal), normalize(vView)));
-  float alpha = (0.12 + 0.22 * edge * edge) * (vHeight > now ? 0.55 : 1.0);
+  float alpha = (0.17 + 0.3 * edge * edge) * (vHeight > now ? 0.6 : 1.0);
   gl_FragColor = vec4(vTint, alpha);
   #include <colorspace_fragment>
 }`,

@@ -4,7 +4,7 @@ import { BufferGeometry, Color, Float32BufferAttribute, Mesh, ShaderMaterial } f
 import { roundedHull } from "../crowd/hull";
 import { type Member, membersOf, pathPoints, span } from "../crowd/lookup";
 import type { Crowd, Vec2 } from "../crowd/model";
-import type { Outlines } from "../store";
+import type { ColorMode, Outlines } from "../store";
 import { categorical } from "./palette";
 import { band, fan } from "./strips";
 
@@ -39,23 +39,26 @@ export class PatchOutlines {
 
   constructor(crowd: Crowd, all: readonly Hull[]) {
     const positions: number[] = [];
-    const colors: number[] = [];
+    const kindColors: number[] = [];
+    const instanceColors: number[] = [];
     const spans: number[] = [];
     const add = (hull: Hull, triangles: number[], alpha: number) => {
-      const color = new Color(categorical(hull.kind));
+      const [ofKind, ofInstance] = [hull.kind, hull.instance].map((i) => new Color(categorical(i)));
       positions.push(...triangles);
       for (let i = 0; i < triangles.length; i += 3) {
-        colors.push(color.r, color.g, color.b, alpha);
+        kindColors.push(ofKind.r, ofKind.g, ofKind.b, alpha);
+        instanceColors.push(ofInstance.r, ofInstance.g, ofInstance.b);
         spans.push(hull.begin / crowd.fps, hull.end / crowd.fps, hull.people);
       }
     };
     for (const hull of all) {
       add(hull, fan(hull.outline, 0), hull.people > 1 ? 0.2 : 0.05);
-      add(hull, band(hull.outline, hull.people > 1 ? 0.03 : 0.014, 0), hull.people > 1 ? 0.95 : 0.55);
+      add(hull, band(hull.outline, hull.people > 1 ? 0.024 : 0.012, 0), hull.people > 1 ? 0.95 : 0.55);
     }
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new Float32BufferAttribute(positions, 3));
-    geometry.setAttribute("tint", new Float32BufferAttribute(colors, 4));
+    geometry.setAttribute("kindColor", new Float32BufferAttribute(kindColors, 4));
+    geometry.setAttribute("patchColor", new Float32BufferAttribute(instanceColors, 3));
     geometry.setAttribute("span", new Float32BufferAttribute(spans, 3));
     this.material = new ShaderMaterial({
       transparent: true,
@@ -63,7 +66,7 @@ export class PatchOutlines {
       polygonOffset: true,
       polygonOffsetFactor: -1,
       polygonOffsetUnits: -1,
-      uniforms: { time: { value: 0 }, lift: { value: 0 }, least: { value: 2 } },
+      uniforms: { time: { value: 0 }, lift: { value: 0 }, least: { value: 2 }, byInstance: { value: 0 } },
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
     });
@@ -72,7 +75,9 @@ export class PatchOutlines {
     this.mesh.renderOrder = 1.5;
   }
 
-  update(secs: number, lift: number, show: Outlines): void {
+  /** `color`: in the mode that shows who is together, outlines take their people's colour. */
+  update(secs: number, lift: number, show: Outlines, color: ColorMode): void {
+    this.material.uniforms.byInstance.value = color === "shared" ? 1 : 0;
     this.mesh.visible = show !== "none";
     this.material.uniforms.time.value = secs;
     this.material.uniforms.lift.value = lift;
@@ -81,13 +86,13 @@ export class PatchOutlines {
 }
 
 const VERTEX = /* glsl */ `
-attribute vec4 tint; attribute vec3 span;
-uniform float time, lift, least;
+attribute vec4 kindColor; attribute vec3 patchColor, span;
+uniform float time, lift, least, byInstance;
 varying vec4 vTint;
 void main() {
   float fade = smoothstep(span.x - 0.15, span.x + 0.15, time) * (1.0 - smoothstep(span.y - 0.15, span.y + 0.15, time));
   bool shown = span.z >= least && fade > 0.0;
-  vTint = vec4(tint.rgb, tint.a * fade);
+  vTint = vec4(mix(kindColor.rgb, patchColor, byInstance), kindColor.a * fade);
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position + vec3(0.0, lift + 0.004, 0.0), 1.0);
   if (!shown) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }

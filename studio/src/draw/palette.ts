@@ -1,11 +1,10 @@
 /** All colours of the picture. */
 
-import { Color } from "three";
+import { Color, SRGBColorSpace } from "three";
 
-/** Colours of a theme; the page's own are in style.css. */
+/** Colours and lights of the scene; the page's own are in style.css. */
 export interface Theme {
   background: string;
-  horizon: string;
   ground: string;
   region: string;
   line: string;
@@ -20,32 +19,16 @@ export interface Theme {
 
 export const LIGHT: Theme = {
   background: "#e9e7e2",
-  horizon: "#f3f1ed",
   ground: "#e4e1db",
   region: "#f4f2ee",
   line: "#b9b4a9",
   border: "#6f6a60",
   obstacle: "#cfcac0",
   sky: "#f4f6ff",
-  bounce: "#b9a48c",
+  bounce: "#c9b7a1",
   sun: "#fff3df",
-  skyStrength: 1.55,
-  sunStrength: 2.3,
-};
-
-export const DARK: Theme = {
-  background: "#14171c",
-  horizon: "#1b1f26",
-  ground: "#171b20",
-  region: "#20252c",
-  line: "#3a424d",
-  border: "#8793a3",
-  obstacle: "#39414c",
-  sky: "#b9c8e6",
-  bounce: "#3d3530",
-  sun: "#fff0dc",
-  skyStrength: 1.25,
-  sunStrength: 2.2,
+  skyStrength: 1.85,
+  sunStrength: 1.75,
 };
 
 const SKIN = ["#f2c9ac", "#e5b08d", "#d49a74", "#b97a56", "#8d5a3c", "#6a422d"];
@@ -61,8 +44,8 @@ const SOLE = ["#dedad2", "#2a2725", "#e9e6df"];
 /** Evenly different hues of one calm family, for kinds and instances. */
 export function categorical(index: number): string {
   const hue = (0.055 + index * 0.381966) % 1;
-  const light = [0.55, 0.47, 0.62][index % 3];
-  return `#${new Color().setHSL(hue, 0.52, light).getHexString()}`;
+  const light = [0.6, 0.5, 0.67][index % 3];
+  return `#${new Color().setHSL(hue, 0.55, light, SRGBColorSpace).getHexString()}`;
 }
 
 /** sRGB bytes of a CSS colour. */

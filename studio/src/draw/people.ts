@@ -155,8 +155,8 @@ void main() {
   float soft = 1.0 - smoothstep(0.0, 1.0, r);
   vec4 shade = vec4(vec3(0.06, 0.055, 0.07), vDark * soft * soft);
   float width = fwidth(r);
-  float ring = smoothstep(0.80 - width, 0.80, r) * (1.0 - smoothstep(0.90, 0.90 + width, r));
-  gl_FragColor = mix(shade, vec4(0.93, 0.45, 0.08, 1.0), ring * vRing);
+  float ring = smoothstep(0.84 - width, 0.84, r) * (1.0 - smoothstep(0.90, 0.90 + width, r));
+  gl_FragColor = mix(shade, vec4(0.80, 0.19, 0.03, 1.0), ring * vRing);
   #include <colorspace_fragment>
 }
 `;

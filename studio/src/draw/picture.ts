@@ -80,10 +80,15 @@ export class Picture {
     this.store.set("follow", false);
     const { center, radius } = this.stage;
     if (view === "loom") {
-      const middle = center.clone().setY(this.drawn.loom.height * 0.47);
-      this.cameras.aim(view, middle, Math.hypot(radius, this.drawn.loom.height / 2) * 1.04, fly);
+      const middle = center.clone().setY(this.drawn.loom.height * 0.43);
+      this.cameras.aim(view, middle, Math.hypot(radius, this.drawn.loom.height / 2) * 1.12, fly);
     } else {
-      this.cameras.aim(view, view === "front" ? center.clone().setY(0.8) : center, radius, fly);
+      this.cameras.aim(
+        view,
+        center.clone().setY(view === "front" ? 0.2 : view === "persp" ? -radius * 0.05 : 0),
+        radius,
+        fly,
+      );
     }
     this.invalidate();
   }
@@ -112,7 +117,7 @@ export class Picture {
     people.uniforms.colorMode.value = COLOR_MODES.indexOf(store.get("color"));
     people.uniforms.chosen.value = store.get("person") ?? -1;
     people.update(time, lift);
-    outlines.update(time, lift, store.get("outlines"));
+    outlines.update(time, lift, store.get("outlines"), store.get("color"));
     loom.group.visible = inLoom;
     if (inLoom) loom.update(time, store.get("person") ?? -1);
     people.body.castShadow = !inLoom;
@@ -126,7 +131,7 @@ export class Picture {
     this.followed.setScalar(Number.NaN);
     if (!on || person === null || !this.drawn) return;
     const at = this.placeOf(person);
-    if (at) this.cameras.close(at, 5.2, true);
+    if (at) this.cameras.close(at, 6.2, this.stats.pictures > 0);
   }
 
   private follow(): void {

@@ -1,7 +1,6 @@
 /** The scene: renderer, lights, ground, region and obstacles. */
 
 import {
-  ACESFilmicToneMapping,
   BufferGeometry,
   Color,
   DirectionalLight,
@@ -9,6 +8,7 @@ import {
   Float32BufferAttribute,
   Group,
   HemisphereLight,
+  LinearToneMapping,
   Mesh,
   MeshStandardMaterial,
   PCFShadowMap,
@@ -44,8 +44,8 @@ export class Stage {
     private theme: Theme = LIGHT,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
-    this.renderer.toneMapping = ACESFilmicToneMapping;
-    this.renderer.toneMappingExposure = 0.92;
+    this.renderer.toneMapping = LinearToneMapping;
+    this.renderer.toneMappingExposure = 1;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.info.autoReset = false;
@@ -53,7 +53,7 @@ export class Stage {
     this.sun = new DirectionalLight(theme.sun, theme.sunStrength);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
-    this.sun.shadow.radius = 3.5;
+    this.sun.shadow.radius = 5;
     this.sun.shadow.bias = -0.0004;
     this.sun.shadow.normalBias = 0.02;
     this.scene.add(this.hemisphere, this.sun, this.sun.target, this.ground);
@@ -187,8 +187,8 @@ bool inside(vec2 p) {
 void main() {
   bool in_region = inside(vGround);
   vec3 color = in_region ? regionColor : groundColor;
-  float lines = max(grid(vGround, 1.0, 0.004) * 0.55, grid(vGround, 5.0, 0.008) * 0.8);
-  color = mix(color, lineColor, lines * (in_region ? 0.75 : 0.45));
+  float lines = max(grid(vGround, 1.0, 0.002) * 0.42, grid(vGround, 5.0, 0.005) * 0.7);
+  color = mix(color, lineColor, lines * (in_region ? 0.75 : 0.3));
   float far = smoothstep(radius * 1.1, radius * 3.2, length(vGround - center.xz));
   gl_FragColor = vec4(mix(color, backgroundColor, far), 1.0);
   #include <colorspace_fragment>

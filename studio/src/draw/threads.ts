@@ -28,7 +28,7 @@ export function threads(crowd: Crowd, rise: number, radius: number): Threads {
         const shared = crowd.kinds[crowd.instances[f.instance]].people > 1;
         const color = new Color(categorical(f.instance));
         // Single-person patches step back: half-way to grey.
-        if (!shared) color.lerp(new Color("#a9a59b"), 0.55);
+        if (!shared) color.lerp(new Color("#9f9b92"), 0.42);
         tube(crowd, person, from, to, every, rise, shared ? radius * 1.7 : radius, color, out);
         from = to;
       }
