@@ -25,9 +25,12 @@ use crate::{Error, Result};
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 400;
 /// Failed tries in a row after which no further patch of several people is wished for.
-const ENRICH_PATIENCE: usize = 40_000;
+const ENRICH_PATIENCE: usize = 10_000;
 /// Largest share of the people's time in patches of several people that early rounds aim at.
 const BUSIEST: f32 = 0.7;
+/// Tries per person in the sweep through time, and how far ahead of it patches are put, ticks.
+const SWEEP_TRIES: usize = 100;
+const SWEEP_TICKS: i32 = 30;
 /// Rounds of mending.
 const MEND_ROUNDS: usize = 30;
 /// Time between two reports of progress.
@@ -131,7 +134,7 @@ fn engine(
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
     let library = Library::new(set, scene.limits);
     let mut tracks = Tracks::new(&library, domain);
-    let taste = Taste { calm: calm(scene), expansions: 150 };
+    let taste = Taste { calm: calm(scene), expansions: 60 };
 
     // Patches of several people need room: they go in while the place is half empty, enough of them for all to come.
     for part in [3, 2, 1] {
@@ -172,16 +175,27 @@ fn seed(tracks: &mut Tracks, wish: usize, taste: Taste, clock: &mut Clock, rng: 
     }
 }
 
+/// Adds patches of several people until their share of the people's time is `wish`: once through time from its
+/// beginning, when what comes after is free, then wherever there is room.
 fn enrich_to(tracks: &mut Tracks, wish: f32, taste: Taste, clock: &mut Clock, rng: &mut ChaCha8Rng) {
     let kinds = tracks.library.multi.clone();
     if kinds.is_empty() || tracks.tracks.is_empty() {
         return;
     }
-    let mut failures = 0;
+    let last = tracks.domain.horizon - 15;
     let mut share = tracks.multi_person_share();
-    while share < wish && failures < ENRICH_PATIENCE && clock.goes_on(|| state(tracks, Phase::Enrich)) {
+    let tries = SWEEP_TRIES * tracks.tracks.len();
+    let sweep = (0..tries).map(|i| {
+        let tick = (i * last as usize / tries) as i32;
+        tick..(tick + SWEEP_TICKS).min(last)
+    });
+    let mut failures = 0;
+    for ticks in sweep.chain(std::iter::repeat(0..last)) {
+        if share >= wish || failures > ENRICH_PATIENCE || !clock.goes_on(|| state(tracks, Phase::Enrich)) {
+            return;
+        }
         let kind = kinds[rng.random_range(0..kinds.len())];
-        if enrich(tracks, kind, taste, rng) {
+        if enrich(tracks, kind, ticks, taste, rng) {
             failures = 0;
             share = tracks.multi_person_share();
         } else {

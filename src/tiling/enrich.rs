@@ -2,11 +2,14 @@
 //! around it are ripped up and bridged again, and so are those of the few who stand in the way; if one bridge fails
 //! everything is as before.
 
+use std::ops::Range;
+
 use glam::Vec2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::bridge::{Goal, Port, Taste};
+use super::library::Role;
 use super::occupancy::{Piece, PieceId};
 use super::tracks::{TrackId, Tracks, Undo, Window};
 use crate::geom::{Ground, complex, wrap_angle};
@@ -17,7 +20,7 @@ const CAST_RADIUS: f32 = 2.6;
 /// How long before an entry players are looked for, ticks.
 const CAST_LEAD: i32 = 40;
 /// Shortest way to an entry and back from an exit, ticks; drawn from this range.
-const BRIDGE_TICKS: std::ops::Range<i32> = 15..50;
+const BRIDGE_TICKS: Range<i32> = 15..50;
 /// How far from where somebody would be anyway a patch is put, metres and radians.
 const JITTER: f32 = 0.5;
 const JITTER_TURN: f32 = 0.8;
@@ -48,9 +51,9 @@ struct Part {
     keep_after: usize,
 }
 
-/// Tries to put one instance of `kind` into the tiling.
-pub(super) fn enrich(tracks: &mut Tracks, kind: u32, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
-    let Some(parts) = cast(tracks, kind, rng) else { return false };
+/// Tries to put one instance of `kind` into the tiling, somebody's entry being in `ticks`.
+pub(super) fn enrich(tracks: &mut Tracks, kind: u32, ticks: Range<i32>, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
+    let Some(parts) = cast(tracks, kind, ticks, rng) else { return false };
     let mut undo = Undo::default();
     if perform(tracks, &parts, taste, rng, &mut undo).is_some() {
         tracks.commit(undo);
@@ -62,36 +65,65 @@ pub(super) fn enrich(tracks: &mut Tracks, kind: u32, taste: Taste, rng: &mut Cha
 }
 
 /// Chooses place, time and players: somebody's way leads through one of the entries, others are near the rest.
-fn cast(tracks: &Tracks, kind: u32, rng: &mut ChaCha8Rng) -> Option<Vec<Part>> {
+fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> Option<Vec<Part>> {
     let library = tracks.library;
     let roles = library.roles_of(kind);
     let lead_role = rng.random_range(roles.clone());
     let lead_track = rng.random_range(0..tracks.tracks.len());
     let lead = &library.roles[lead_role as usize];
-    let (horizon, tick) = (tracks.domain.horizon, rng.random_range(0..tracks.domain.horizon - 15));
-    // Some patches are met half-way through at the first frame.
-    let tick = if tick < EARLY_TICKS { tick - rng.random_range(0..lead.ticks) } else { tick };
-    let on_the_way = tracks.state_at(lead_track, tick.max(0));
-    let aside = Vec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * JITTER;
-    let at = on_the_way.then(Ground::new(aside, rng.random_range(-JITTER_TURN..JITTER_TURN)));
+    let horizon = tracks.domain.horizon;
+    let (at, tick, joint) = meeting_point(tracks, lead_track, lead, ticks, rng);
     let world_from_patch = at.then(lead.entry.inverse());
     let clock = tick - lead.begin;
 
     let mut parts: Vec<Part> = Vec::with_capacity(roles.len());
     let mut near = Vec::new();
     for role in roles {
-        let (entry, exit) = ports(tracks, role, world_from_patch, clock);
+        let (mut entry, exit) = ports(tracks, role, world_from_patch, clock);
         let room = |p: &Port| p.tick < 0 || p.tick > horizon || tracks.domain.holds(p.at.position, WALL_ROOM);
         if !room(&entry) || !room(&exit) {
             return None;
         }
-        let taken = |t: TrackId| t == lead_track || parts.iter().any(|p| p.track == t);
-        let track = if role == lead_role { lead_track } else { player(tracks, &entry, taken, &mut near, rng)? };
-        let keep_before = rip_from(tracks, track, &entry, rng)?;
-        let keep_after = rip_to(tracks, track, keep_before, &entry, &exit, rng)?;
-        parts.push(Part { track, role, entry, exit, keep_before, keep_after });
+        let part = |track, keep_before, keep_after| Part { track, role, entry, exit, keep_before, keep_after };
+        let part = if role != lead_role {
+            let taken = |t: TrackId| t == lead_track || parts.iter().any(|p| p.track == t);
+            let (track, from, to) = player(tracks, &entry, &exit, taken, &mut near, rng)?;
+            part(track, from, to)
+        } else if let Some(joint) = joint {
+            // The very numbers of the joint, not ones that differ by rounding.
+            entry.at = at;
+            let to = rip_to(tracks, lead_track, joint, &entry, &exit, rng)?;
+            Part { track: lead_track, role, entry, exit, keep_before: joint, keep_after: to }
+        } else {
+            let from = rip_from(tracks, lead_track, &entry, rng)?;
+            part(lead_track, from, rip_to(tracks, lead_track, from, &entry, &exit, rng)?)
+        };
+        parts.push(part);
     }
     Some(parts)
+}
+
+/// Where and when `track` is to enter as `lead`: at a joint of its pieces if one fits (then which), or near its way.
+fn meeting_point(
+    tracks: &Tracks,
+    track: TrackId,
+    lead: &Role,
+    ticks: Range<i32>,
+    rng: &mut ChaCha8Rng,
+) -> (Ground, i32, Option<usize>) {
+    let tick = rng.random_range(ticks);
+    // Some patches are met half-way through at the first frame.
+    let tick = if tick < EARLY_TICKS { tick - rng.random_range(0..lead.ticks) } else { tick };
+    if tick > 0 && rng.random_range(0..2) == 0 {
+        let joint = tracks.index_at(track, tick);
+        let port = tracks.port(track, joint);
+        if port.group == lead.entry_group && port.tick > 0 && port.tick < tracks.domain.horizon - 15 {
+            return (port.at, port.tick, Some(joint));
+        }
+    }
+    let on_the_way = tracks.state_at(track, tick.max(0));
+    let aside = Vec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * JITTER;
+    (on_the_way.then(Ground::new(aside, rng.random_range(-JITTER_TURN..JITTER_TURN))), tick, None)
 }
 
 fn ports(tracks: &Tracks, role: u32, world_from_patch: Ground, clock: i32) -> (Port, Port) {
@@ -101,19 +133,27 @@ fn ports(tracks: &Tracks, role: u32, world_from_patch: Ground, clock: i32) -> (P
     (entry, exit)
 }
 
-/// One of those who could be at `entry` in time.
+/// One of those who can be at `entry` in time and go on from `exit`: person, first and one past the last piece to rip.
 fn player(
     tracks: &Tracks,
     entry: &Port,
+    exit: &Port,
     taken: impl Fn(TrackId) -> bool,
     near: &mut Vec<PieceId>,
     rng: &mut ChaCha8Rng,
-) -> Option<TrackId> {
+) -> Option<(TrackId, usize, usize)> {
     let tick = (entry.tick - CAST_LEAD).clamp(0, tracks.domain.horizon - 1);
     tracks.occupancy.near(tick, entry.at.position, CAST_RADIUS, near);
     let mut candidates: Vec<TrackId> = near.iter().map(|&id| tracks.owner(id)).filter(|&t| !taken(t)).collect();
     candidates.sort_unstable();
-    (!candidates.is_empty()).then(|| candidates[rng.random_range(0..candidates.len())])
+    while !candidates.is_empty() {
+        let track = candidates.swap_remove(rng.random_range(0..candidates.len()));
+        let from = rip_from(tracks, track, entry, rng);
+        if let Some((from, to)) = from.and_then(|f| Some((f, rip_to(tracks, track, f, entry, exit, rng)?))) {
+            return Some((track, from, to));
+        }
+    }
+    None
 }
 
 /// First piece to rip up so that the person can walk to `entry` in time; 0 if the person begins there.
@@ -126,7 +166,7 @@ fn rip_from(tracks: &Tracks, track: TrackId, entry: &Port, rng: &mut ChaCha8Rng)
         if !no_patch_between(tracks, track, from.tick, entry.tick) || entry.tick - from.tick > LONGEST_BRIDGE {
             return None;
         }
-        if in_reach(&from, entry) {
+        if in_reach(tracks, &from, entry) {
             return Some(index);
         }
     }
@@ -153,7 +193,7 @@ fn rip_to(
         if to.tick - exit.tick > LONGEST_BRIDGE {
             break;
         }
-        if in_reach(exit, &to) {
+        if in_reach(tracks, exit, &to) {
             return Some(index);
         }
         index += 1;
@@ -162,9 +202,12 @@ fn rip_to(
 }
 
 /// True if one can walk from one port to the other at ease, turning included.
-fn in_reach(from: &Port, to: &Port) -> bool {
+fn in_reach(tracks: &Tracks, from: &Port, to: &Port) -> bool {
     let left = (to.tick - from.tick) as f32 / FPS;
     let way = to.at.position - from.at.position;
+    if to.tick - from.tick < tracks.library.least_ticks(from.group, to.group) {
+        return false;
+    }
     let turn = |heading: f32| (wrap_angle(complex::arg(way) - heading).abs() - EASY_TURN).max(0.0);
     let turning = if way.length() > 0.5 {
         turn(from.at.heading) + turn(to.at.heading)
@@ -276,7 +319,7 @@ fn lead_in(
     undo: &mut Undo,
 ) -> Option<Vec<PieceId>> {
     let from = tracks.port(part.track, part.keep_before);
-    if part.entry.tick <= 0 {
+    if part.entry.tick <= 0 || from == part.entry {
         return Some(vec![]);
     }
     let chain = if part.keep_before == 0 {

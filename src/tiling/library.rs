@@ -13,6 +13,10 @@ use crate::patch::{PatchSet, fastest_turns};
 const MARGIN: f32 = 0.02;
 /// Warped in time, a joint may turn this much faster than the captures' fastest.
 const RUSH: f32 = 1.1;
+/// A closing that leads this far leads somewhere, metres.
+const SOME_WAY: f32 = 0.4;
+/// What a way takes between pose groups that no two kinds connect, ticks.
+const LONG_TICKS: i32 = 90;
 /// Longest strand of two single-person kinds that closes a gap, in frames.
 const MAX_STRAND_FRAMES: usize = 110;
 
@@ -87,6 +91,7 @@ pub(super) struct Library<'a> {
     pub backward: Vec<Vec<Move>>,
     /// By entry group * groups + exit group.
     pub closings: Vec<Vec<Closing>>,
+    least_ticks: Vec<i32>,
     /// Fastest turn of each joint in the captures, radians per frame.
     pub fastest: [f32; JOINT_COUNT],
     /// Largest reach of any footprint.
@@ -114,7 +119,10 @@ impl<'a> Library<'a> {
             backward[role.exit_group as usize].push(step(role.exit.inverse(), role.entry_group));
         }
         let closings = closings(&roles, groups, is_single);
+        let walked = |c: &&Closing| c.strand.exit().position.length() > SOME_WAY;
+        let least = |c: &Vec<Closing>| c.iter().filter(walked).map(|c| c.ticks.0).min().unwrap_or(LONG_TICKS);
         Self {
+            least_ticks: closings.iter().map(least).collect(),
             set,
             limits,
             first_role,
@@ -129,6 +137,11 @@ impl<'a> Library<'a> {
             max_reach: roles.iter().flat_map(|r| &r.reach).copied().fold(0.0, f32::max),
             roles,
         }
+    }
+
+    /// Fewest ticks in which single-person kinds lead from one pose group to another over some way.
+    pub fn least_ticks(&self, from: u32, to: u32) -> i32 {
+        self.least_ticks[from as usize * self.set.groups.len() + to as usize]
     }
 
     /// The roles of a kind.
