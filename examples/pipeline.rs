@@ -16,7 +16,14 @@ fn main() -> crowdquilt::Result<()> {
     // 2. Tile the demo's scene.
     let options = Options { seed: args.get(3).and_then(|s| s.parse().ok()).unwrap_or(1), ..Options::default() };
     let outcome = tile(&Scene::demo(), &set, &options, &mut |p| {
-        eprint!("\r{:?}: {} patches, {} characters, {:.1} % together, {:.1} s ", p.phase, p.patches, p.characters, p.multi_person_share * 100.0, p.secs);
+        eprint!(
+            "\r{:?}: {} patches, {} characters, {:.1} % together, {:.1} s ",
+            p.phase,
+            p.patches,
+            p.characters,
+            p.multi_person_share * 100.0,
+            p.secs
+        );
         true
     })?;
     println!("{:?} in {:.2} s", outcome.status, outcome.solve_secs);

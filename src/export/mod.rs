@@ -10,6 +10,7 @@ mod glb;
 mod loft;
 mod look;
 mod mannequin;
+mod shape;
 mod skinning;
 
 pub use clip::clip;
