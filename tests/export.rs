@@ -198,3 +198,24 @@ fn a_crowd_of_seventy_stays_small() {
     assert!(bytes.len() < 70 * 601 * (22 * 8 + 12) + 1_500_000, "{}", bytes.len());
     std::fs::write(concat!(env!("CARGO_TARGET_TMPDIR"), "/seventy.glb"), bytes).unwrap();
 }
+
+#[test]
+fn a_bvh_file_read_back_has_the_joints_where_the_crowd_has_them() {
+    let crowd = crowd();
+    let text = crowdquilt::export::bvh(&crowd, fixture::SHAKER).unwrap();
+    std::fs::write(concat!(env!("CARGO_TARGET_TMPDIR"), "/person_2.bvh"), &text).unwrap();
+    let read = crowdquilt::motion::bvh::read(text.as_bytes()).unwrap();
+    let person = &crowd.characters[fixture::SHAKER];
+    assert_eq!(read.frames(), person.frames());
+    assert!((read.fps - FPS).abs() < 1e-3);
+    let (mut found, mut expected) = (Vec::new(), Vec::new());
+    for frame in [0, 33, 79] {
+        read.globals(frame, &mut found);
+        person.globals(frame, &mut expected);
+        for (joint, e) in crowdquilt::motion::canonical().joints.iter().zip(&expected) {
+            let f = found[read.skeleton.find(&joint.name).unwrap()].0;
+            assert!(e.0.distance(f) < 1e-3, "frame {frame}, {}: {f} against {}", joint.name, e.0);
+        }
+    }
+    assert!(crowdquilt::export::bvh(&crowd, 9).is_err());
+}

@@ -1,6 +1,6 @@
 //! One person of a crowd as a clip, the form that motion files are written from.
 
-use crate::motion::{Clip, FPS, canonical};
+use crate::motion::{self, Clip, FPS, canonical};
 use crate::stage::Crowd;
 use crate::{Error, Result};
 
@@ -23,4 +23,12 @@ pub fn clip(crowd: &Crowd, character: usize) -> Result<Clip> {
         root: found.root.clone(),
         rotations: found.rotations.clone(),
     })
+}
+
+/// The final motion of one person as the text of a BVH file.
+///
+/// # Errors
+/// There is no such person, or it has no motion.
+pub fn bvh(crowd: &Crowd, character: usize) -> Result<String> {
+    clip(crowd, character).map(|clip| motion::bvh::write(&clip))
 }

@@ -108,7 +108,8 @@ impl Stitch {
             _ => 0.5,
         };
         let window = |s: &Segment, share: f32| {
-            let (frames, ticks) = (if share == 1.0 { LONG_BLEND_FRAMES } else { BLEND_FRAMES }, s.placed.end - s.placed.begin);
+            let (frames, ticks) =
+                (if share == 1.0 { LONG_BLEND_FRAMES } else { BLEND_FRAMES }, s.placed.end - s.placed.begin);
             frames.min((ticks as f32 * (0.5 + 0.3 * (share - 0.5))) as i32).max(1)
         };
         Self {

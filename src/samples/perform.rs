@@ -55,7 +55,14 @@ struct Frame {
 }
 
 /// Plays `actor` (number `me` of the take) over `end` frames of 30 per second; `paths` are everybody's.
-pub(super) fn perform(actor: &Actor, me: usize, paths: &[Path], end: i32, name: &str, rng: &mut impl rand::Rng) -> Clip {
+pub(super) fn perform(
+    actor: &Actor,
+    me: usize,
+    paths: &[Path],
+    end: i32,
+    name: &str,
+    rng: &mut impl rand::Rng,
+) -> Clip {
     let mut actor = actor.clone();
     let path = &paths[me];
     place_feet(&mut actor, path, rng);
@@ -99,7 +106,12 @@ fn prepare(actor: &Actor, path: &Path, end: i32) -> Vec<Frame> {
     };
     let shares = blur(&times.iter().map(|&t| share(t)).collect::<Vec<_>>(), 0.055 * RATE as f32);
     let speeds = blur(&times.iter().map(|&t| path.speed(t)).collect::<Vec<_>>(), 0.10 * RATE as f32);
-    times.iter().zip(shares).zip(speeds).map(|((&t, share), speed)| prepare_frame(actor, path, t, share, speed)).collect()
+    times
+        .iter()
+        .zip(shares)
+        .zip(speeds)
+        .map(|((&t, share), speed)| prepare_frame(actor, path, t, share, speed))
+        .collect()
 }
 
 fn prepare_frame(actor: &Actor, path: &Path, t: f32, left_share: f32, speed: f32) -> Frame {
@@ -156,8 +168,9 @@ fn pose(actor: &Actor, me: usize, paths: &[Path], f: &Frame, temper: &Temper) ->
     let mut body = Body::new(Vec3::new(f.hips.x, f.height, f.hips.y), f.pelvis);
     for (i, side) in SIDES.into_iter().enumerate() {
         let out = side_sign(side) * f.channels[[Channel::KneeOutLeft, Channel::KneeOutRight][i]];
-        let pole = Quat::from_rotation_y(out) * (0.6 * (f.feet[i].rotation * Vec3::Z).with_y(0.0).normalize_or_zero()
-            + 0.4 * (f.pelvis * Vec3::Z).with_y(0.0).normalize_or_zero());
+        let pole = Quat::from_rotation_y(out)
+            * (0.6 * (f.feet[i].rotation * Vec3::Z).with_y(0.0).normalize_or_zero()
+                + 0.4 * (f.pelvis * Vec3::Z).with_y(0.0).normalize_or_zero());
         body.set_leg(side, &f.feet[i], knee_pole(pole, &body, i), STRETCH);
     }
     let looks = gaze(actor, paths, me, f);

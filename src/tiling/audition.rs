@@ -26,7 +26,8 @@ pub(super) fn plays_cleanly(kind: &PatchKind) -> bool {
                 then.push(shapes(|g| fragment.motion.globals(f, g), &mut globals));
             }
         }
-        (0..now.len()).all(|i| (0..i).all(|j| depth(&now[i], &now[j]) <= depth(&then[i], &then[j]).max(0.0) + ALLOWANCE))
+        (0..now.len())
+            .all(|i| (0..i).all(|j| depth(&now[i], &now[j]) <= depth(&then[i], &then[j]).max(0.0) + ALLOWANCE))
     })
 }
 

@@ -45,8 +45,7 @@ pub(super) fn bodies(tracks: &Tracks) -> Vec<Body> {
         .into_par_iter()
         .map(|t| {
             let uses = segments_of(tracks, t);
-            let segments: Vec<_> =
-                uses.iter().map(|(kind, placed)| Segment { kind, placed }).collect();
+            let segments: Vec<_> = uses.iter().map(|(kind, placed)| Segment { kind, placed }).collect();
             refine(&segments, last_frame)
         })
         .collect()

@@ -44,11 +44,16 @@ def head(armatures: dict, name: str):
     return np.array([x, z, -y])  # Blender's z up to y up
 
 
+def first_key() -> int:
+    """Importers begin at Blender's frame 0 or 1."""
+    starts = [action.frame_range[0] for action in bpy.data.actions]
+    return round(min(starts))
+
+
 def test_joints_are_within_a_millimetre(crowd):
     header, people = crowd
     armatures = bones()
     for frame in (0, 20, 37, 60, 79, 119):
-        # The importer puts the key of t = 0 at Blender's frame 0 or 1, depending on its release.
         bpy.context.scene.frame_set(frame + first_key())
         for p, person in enumerate(people):
             if not person.begin <= frame < person.begin + len(person.root):
@@ -77,6 +82,18 @@ def test_everybody_has_a_skinned_body(crowd):
     assert all(len(o.data.materials) == 5 for o in bodies)
 
 
-def first_key() -> int:
-    starts = [action.frame_range[0] for action in bpy.data.actions]
-    return round(min(starts))
+def test_a_bvh_file_has_the_joints_within_a_millimetre():
+    bvh = TMP / "person_2.bvh"
+    path = TMP / "fixture.crowd"
+    if not (bvh.exists() and path.exists()):
+        pytest.skip(f"{bvh} or {path} is not there: run `cargo test --test export` first")
+    header, people = crowd_file.read(path)
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.context.scene.render.fps = FPS
+    bpy.ops.import_anim.bvh(filepath=str(bvh), axis_forward="-Z", axis_up="Y")
+    armatures = bones()
+    for frame in (0, 37, 79):
+        bpy.context.scene.frame_set(frame + first_key())
+        for name, expected in crowd_file.joint_positions(header, people[2], frame).items():
+            found = head(armatures, name)
+            assert np.linalg.norm(found - expected) < MILLIMETRE, (frame, name, found, expected)

@@ -120,7 +120,13 @@ fn speeds() -> Scene {
 /// The gait walked before changing to `gait`.
 fn gait_before(gait: Gait, label: &str) -> Gait {
     match (gait == NORMAL, label) {
-        (true, "faster") | (false, "slower") => if label == "faster" { SLOW } else { NORMAL },
+        (true, "faster") | (false, "slower") => {
+            if label == "faster" {
+                SLOW
+            } else {
+                NORMAL
+            }
+        }
         (true, _) => FAST,
         (false, _) => NORMAL,
     }
