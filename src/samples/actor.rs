@@ -158,7 +158,14 @@ impl Actor {
         self.phase.mid_stance(t0, foot != Foot::Left);
         self.phase.mid_stance(t1, foot == Foot::Left);
         self.lift(foot, [at(0.0), at(0.18), at(0.36)], 0.75 * off_pitch(gait.speed));
-        self.land(foot, Base::Walk, t1, Ground::IDENTITY, [at(0.68), at(0.79), at(0.86)], 0.7 * strike_pitch(gait.speed));
+        self.land(
+            foot,
+            Base::Walk,
+            t1,
+            Ground::IDENTITY,
+            [at(0.68), at(0.79), at(0.86)],
+            0.7 * strike_pitch(gait.speed),
+        );
         self.lift(other(foot), [at(0.68), at(0.56), at(0.85)], off_pitch(gait.speed));
         self.now += span;
         self.walking = Some((foot, gait));

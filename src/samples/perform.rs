@@ -55,7 +55,14 @@ struct Frame {
 }
 
 /// Plays `actor` (number `me` of the take) over `end` frames of 30 per second; `paths` are everybody's.
-pub(super) fn perform(actor: &Actor, me: usize, paths: &[Path], end: i32, name: &str, rng: &mut impl rand::Rng) -> Clip {
+pub(super) fn perform(
+    actor: &Actor,
+    me: usize,
+    paths: &[Path],
+    end: i32,
+    name: &str,
+    rng: &mut impl rand::Rng,
+) -> Clip {
     let mut actor = actor.clone();
     let path = &paths[me];
     place_feet(&mut actor, path, rng);
@@ -163,8 +170,9 @@ fn pose(actor: &Actor, me: usize, paths: &[Path], f: &Frame, temper: &Temper) ->
     let mut body = Body::new(Vec3::new(f.hips.x, f.height, f.hips.y), f.pelvis);
     for (i, side) in SIDES.into_iter().enumerate() {
         let out = side_sign(side) * f.channels[[Channel::KneeOutLeft, Channel::KneeOutRight][i]];
-        let pole = Quat::from_rotation_y(out) * (0.6 * (f.feet[i].rotation * Vec3::Z).with_y(0.0).normalize_or_zero()
-            + 0.4 * (f.pelvis * Vec3::Z).with_y(0.0).normalize_or_zero());
+        let pole = Quat::from_rotation_y(out)
+            * (0.6 * (f.feet[i].rotation * Vec3::Z).with_y(0.0).normalize_or_zero()
+                + 0.4 * (f.pelvis * Vec3::Z).with_y(0.0).normalize_or_zero());
         body.set_leg(side, &f.feet[i], knee_pole(pole, &body, i), STRETCH);
     }
     let looks = gaze(actor, paths, me, f);

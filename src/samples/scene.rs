@@ -9,7 +9,8 @@ use super::path::Path;
 use super::perform::{perform, plants};
 use crate::motion::BodyPart;
 use crate::motion::take::{
-    ImportOptions, TakeContact, TakeFile, TakeHold, TakePatch, TakePerson, TakePlant, TakePort, TakeProp, TakeRole, Touch,
+    ImportOptions, TakeContact, TakeFile, TakeHold, TakePatch, TakePerson, TakePlant, TakePort, TakeProp, TakeRole,
+    Touch,
 };
 
 /// Size of the box that is carried: width between the hands, height, depth (m).
@@ -76,9 +77,12 @@ impl Scene {
             let mut rng = ChaCha8Rng::seed_from_u64(seed ^ fnv(&stem));
             clips.push(perform(actor, person, &paths, end, &stem, &mut rng));
             people.push(TakePerson { file: format!("{stem}.bvh"), import: ImportOptions::default() });
-            all_plants.extend(
-                plants(actor, end).into_iter().map(|(foot, begin, end)| TakePlant { person, foot, begin, end }),
-            );
+            all_plants.extend(plants(actor, end).into_iter().map(|(foot, begin, end)| TakePlant {
+                person,
+                foot,
+                begin,
+                end,
+            }));
             ports.extend(actor.ports.iter().map(|(f, pose)| TakePort { person, time: secs(*f), pose: pose.clone() }));
         }
         let props = self.props(secs(end));

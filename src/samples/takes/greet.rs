@@ -25,9 +25,21 @@ pub(super) fn scenes() -> Vec<Scene> {
     let friendly: &[&str] = &["friendly"];
     let mut all = Vec::new();
     let turns = [rad(90.0), rad(70.0)];
-    all.extend(both(&Encounter { name: "handshake", labels: friendly, places: &facing(SHAKE), turns: &turns, play: shake }));
+    all.extend(both(&Encounter {
+        name: "handshake",
+        labels: friendly,
+        places: &facing(SHAKE),
+        turns: &turns,
+        play: shake,
+    }));
     let turns = [rad(75.0), rad(100.0)];
-    all.extend(both(&Encounter { name: "high-five", labels: friendly, places: &facing(FIVE), turns: &turns, play: five }));
+    all.extend(both(&Encounter {
+        name: "high-five",
+        labels: friendly,
+        places: &facing(FIVE),
+        turns: &turns,
+        play: five,
+    }));
     let turns = [rad(-80.0), rad(-95.0)];
     all.extend(both(&Encounter { name: "bow", labels: friendly, places: &facing(1.3), turns: &turns, play: bow }));
     let turns = [rad(100.0), rad(95.0)];
@@ -43,12 +55,18 @@ pub(super) fn shake(scene: &mut Scene, t: f32) -> f32 {
     let (touch, release) = (t + 0.6, t + 1.5);
     for a in &mut scene.actors[..2] {
         let at = |y: f32| grip(Path, [-0.004, y, 0.5 * SHAKE], [0.14, 0.02, 1.0], [1.0, 0.0, -0.1]);
-        let mut grips = vec![(t + 0.1, grip(Path, [-0.10, 0.96, 0.30], [0.2, 0.0, 1.0], [1.0, 0.2, 0.0])), (touch, at(1.01))];
-        grips.extend([1.05, 0.985, 1.04, 0.995].iter().enumerate().map(|(i, &y)| (touch + 0.17 * (i + 1) as f32, at(y))));
+        let mut grips =
+            vec![(t + 0.1, grip(Path, [-0.10, 0.96, 0.30], [0.2, 0.0, 1.0], [1.0, 0.2, 0.0])), (touch, at(1.01))];
+        grips.extend(
+            [1.05, 0.985, 1.04, 0.995].iter().enumerate().map(|(i, &y)| (touch + 0.17 * (i + 1) as f32, at(y))),
+        );
         grips.push((release, at(1.01)));
         grips.push((release + 0.3, grip(Path, [-0.14, 0.95, 0.28], [0.1, -0.2, 1.0], [1.0, 0.2, 0.0])));
         a.reach(Right, [t, t + 0.5, release, release + 0.5], grips);
-        a.pose([t + 0.1, touch, release, release + 0.45], &[(SpinePitch, 0.09), (SpineYaw, 0.10), (HipsForward, 0.025)]);
+        a.pose(
+            [t + 0.1, touch, release, release + 0.45],
+            &[(SpinePitch, 0.09), (SpineYaw, 0.10), (HipsForward, 0.025)],
+        );
         a.pose([touch, touch + 0.2, touch + 0.3, touch + 0.6], &[(HeadPitch, 0.10)]);
     }
     let now = scene.actors[0].t();
@@ -78,10 +96,19 @@ fn bow(scene: &mut Scene, t: f32) -> f32 {
         let deep = if i == 0 { 1.0 } else { 1.15 };
         a.pose(
             [t + 0.05, t + 0.75, t + 1.05, t + 1.75],
-            &[(PelvisPitch, 0.34 * deep), (SpinePitch, 0.24 * deep), (HipsForward, -0.075 * deep), (HeadPitch, 0.16), (StillArms, 1.0)],
+            &[
+                (PelvisPitch, 0.34 * deep),
+                (SpinePitch, 0.24 * deep),
+                (HipsForward, -0.075 * deep),
+                (HeadPitch, 0.16),
+                (StillArms, 1.0),
+            ],
         );
         // Hands slide down the thighs.
-        a.pose([t + 0.05, t + 0.75, t + 1.05, t + 1.75], &[(FlexLeft, 0.13), (FlexRight, 0.13), (ElbowLeft, -0.1), (ElbowRight, -0.1)]);
+        a.pose(
+            [t + 0.05, t + 0.75, t + 1.05, t + 1.75],
+            &[(FlexLeft, 0.13), (FlexRight, 0.13), (ElbowLeft, -0.1), (ElbowRight, -0.1)],
+        );
     }
     1.95
 }
@@ -93,7 +120,7 @@ fn hug(scene: &mut Scene, t: f32) -> f32 {
         // The other's middle in this one's frame is a little to one side.
         let side = if i == 0 { 0.07 } else { -0.07 };
         let over = |open: f32| {
-            let palm = [side - 0.02 - 0.26 * open, 1.425 + 0.06 * open, HUG + 0.10 - 0.20 * open];
+            let palm = [side - 0.02 - 0.26 * open, 1.395 + 0.095 * open, HUG + 0.075 - 0.20 * open];
             grip(Path, palm, [0.8 - 0.8 * open, -0.5 + 0.6 * open, 0.1 + 0.9 * open], [0.5 * open, -0.4, -1.0 + open])
         };
         let under = |open: f32| {
@@ -101,12 +128,32 @@ fn hug(scene: &mut Scene, t: f32) -> f32 {
             grip(Path, palm, [-1.0 + open, 0.1, 0.1 + 0.9 * open], [-0.5 * open, 0.0, -1.0 + open])
         };
         let times = [t, t + 0.5, release, release + 0.6];
-        a.reach_with(Right, times, vec![(t + 0.15, over(1.0)), (touch, over(0.0)), (release, over(0.0)), (release + 0.35, over(1.0))], Vec3::new(1.0, 0.45, -0.1));
-        a.reach_with(Left, times, vec![(t + 0.15, under(1.0)), (touch, under(0.0)), (release, under(0.0)), (release + 0.35, under(1.0))], Vec3::new(1.0, -0.35, -0.1));
+        let above = grip(Path, [side - 0.18, 1.56, HUG - 0.02], [0.3, 0.0, 1.0], [0.4, -1.0, 0.0]);
+        let grips = vec![
+            (t + 0.1, over(1.0)),
+            (t + 0.47, above),
+            (touch, over(0.0)),
+            (release, over(0.0)),
+            (release + 0.22, above),
+            (release + 0.45, over(1.0)),
+        ];
+        a.reach_with(Right, times, grips, Vec3::new(1.0, 0.45, -0.1));
+        let flank = grip(Path, [side + 0.28, 1.15, HUG + 0.03], [-0.1, 0.1, 1.0], [-1.0, 0.0, 0.0]);
+        let grips = vec![
+            (t + 0.1, under(1.0)),
+            (t + 0.47, flank),
+            (touch, under(0.0)),
+            (release, under(0.0)),
+            (release + 0.22, flank),
+            (release + 0.45, under(1.0)),
+        ];
+        a.reach_with(Left, times, grips, Vec3::new(1.0, -0.35, -0.1));
         a.pose(
             [t + 0.2, touch, release, release + 0.5],
-            &[(SpinePitch, 0.10), (PelvisPitch, 0.07), (SpineRoll, 0.11), (HeadRoll, 0.06), (HeadYaw, 0.15), (HipsForward, 0.005)],
+            &[(SpinePitch, 0.10), (PelvisPitch, 0.07), (HeadYaw, 0.15), (HipsForward, 0.005)],
         );
+        // The heads pass each other to the side, and stay there until the bodies are apart.
+        a.pose([t + 0.1, touch - 0.15, release + 0.2, release + 0.7], &[(SpineRoll, 0.13), (HeadRoll, 0.09)]);
         step_apart(a, release);
         // Pats the back.
         a.pose([touch + 0.25, touch + 0.4, touch + 0.45, touch + 0.6], &[(SpinePitch, 0.012)]);
@@ -124,18 +171,17 @@ fn step_apart(a: &mut Actor, t: f32) {
     let (began, back) = (a.now, Vec2::new(0.0, -0.20));
     a.shift(back, t - 0.05, 0.75);
     a.now = began + (t * 30.0).round() as i32;
-    a.step_from(Right, began, Ground::new(back, 0.0), 11);
+    // The left foot first: the weight, and with it the head, goes to the right, away from the other's.
     a.step_from(Left, began, Ground::new(back, 0.0), 11);
+    a.step_from(Right, began, Ground::new(back, 0.0), 11);
     a.now = began;
 }
 
 /// Two people walk past each other and slap hands.
 fn five_in_passing() -> Scene {
-    let (aside, ahead) = (0.33, 0.20);
-    let places = [
-        Ground::new(Vec2::new(aside, -ahead), 0.0),
-        Ground::new(Vec2::new(-aside, ahead), std::f32::consts::PI),
-    ];
+    let (aside, ahead) = (0.33, 0.27);
+    let places =
+        [Ground::new(Vec2::new(aside, -ahead), 0.0), Ground::new(Vec2::new(-aside, ahead), std::f32::consts::PI)];
     let mut entries = Vec::new();
     let mut actors = Vec::new();
     for (i, place) in places.into_iter().enumerate() {
@@ -151,8 +197,14 @@ fn five_in_passing() -> Scene {
         let world = |v: Vec3| if i == 0 { v } else { Vec3::new(-v.x, v.y, -v.z) };
         let mut slap = grip(crate::samples::gesture::Relative::World, [0.0; 3], [0.0; 3], [0.0; 3]);
         (slap.palm, slap.fingers, slap.facing) = (palm, world(Vec3::new(-0.1, 1.0, 0.1)), world(Vec3::Z));
-        let grips = vec![(-0.75, up), (-0.45, up), (-0.05, slap), (0.06, slap), (0.27, grip(Path, [-0.31, 1.22, 0.27], [-0.1, 0.4, 0.9], [0.5, -0.4, 0.4]))];
-        a.reach_with(Right, [-0.85, -0.30, 0.10, 0.70], grips, Vec3::new(1.0, -0.9, 0.0));
+        let grips = vec![
+            (-0.75, up),
+            (-0.45, up),
+            (-0.05, slap),
+            (0.03, slap),
+            (0.30, grip(Path, [-0.31, 1.22, 0.27], [-0.1, 0.4, 0.9], [0.5, -0.4, 0.4])),
+        ];
+        a.reach_with(Right, [-0.85, -0.30, 0.06, 0.75], grips, Vec3::new(1.0, -0.9, 0.0));
         a.look([-1.3, -0.8, 0.05, 0.45], Sight::Person(1 - i));
         a.pose([-0.4, -0.05, 0.06, 0.45], &[(SpineYaw, 0.10), (SpinePitch, 0.02)]);
         a.walk(NORMAL, 2);
@@ -161,7 +213,7 @@ fn five_in_passing() -> Scene {
     let exits: Vec<i32> = actors.iter().map(|a| a.now).collect();
     let mut scene = Scene::new("high-five-passing", actors);
     let hit = scene.actors[0].t() - 34.0 / 30.0;
-    scene.contact((0, RightHand), (1, RightHand), hit - 0.05, hit + 0.06);
+    scene.contact((0, RightHand), (1, RightHand), hit - 0.05, hit + 0.03);
     let roles = [(0, entries[0], exits[0]), (1, entries[1], exits[1])];
     scene.patch("high-five-passing", &["friendly", "walk"], &roles, Some([hit - 0.4, hit + 0.2]));
     scene

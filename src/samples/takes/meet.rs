@@ -27,10 +27,7 @@ pub(super) struct Encounter<'a> {
 
 /// Two people facing each other at a distance (m): the first looks along +z.
 pub(super) fn facing(distance: f32) -> [Ground; 2] {
-    [
-        Ground::IDENTITY,
-        Ground::new(glam::Vec2::new(0.0, distance), std::f32::consts::PI),
-    ]
+    [Ground::IDENTITY, Ground::new(glam::Vec2::new(0.0, distance), std::f32::consts::PI)]
 }
 
 /// The encounter walking up and away, and again from standing to standing.

@@ -23,11 +23,20 @@ fn push(scene: &mut Scene, t: f32) -> f32 {
     let a = &mut scene.actors[0];
     for (side, s) in [(Left, 1.0), (Right, -1.0)] {
         let at = |z: f32, y: f32| grip(Path, [s * 0.085, y, z], [s * -0.1, 0.9, 0.45], [0.0, -0.15, 1.0]);
-        let grips = vec![(t + 0.1, at(0.22, 1.22)), (t + 0.4, at(0.24, 1.25)), (touch, at(APART - 0.12, 1.33)), (release, at(APART - 0.07, 1.34)), (release + 0.35, at(0.36, 1.2))];
+        let grips = vec![
+            (t + 0.1, at(0.22, 1.22)),
+            (t + 0.4, at(0.24, 1.25)),
+            (touch, at(APART - 0.12, 1.33)),
+            (release, at(APART - 0.07, 1.34)),
+            (release + 0.35, at(0.36, 1.2)),
+        ];
         a.reach_with(side, [t, t + 0.40, release + 0.05, release + 0.75], grips, ELBOW);
     }
-    a.pose([t + 0.1, t + 0.42, t + 0.45, touch], &[(SpinePitch, -0.04), (HipsForward, -0.03)]);
-    a.pose([t + 0.4, touch + 0.1, release, release + 0.7], &[(SpinePitch, 0.17), (PelvisPitch, 0.06), (HipsForward, 0.06), (HeadPitch, -0.08)]);
+    a.pose([t + 0.0, t + 0.36, t + 0.40, touch + 0.1], &[(SpinePitch, -0.04), (HipsForward, -0.025)]);
+    a.pose(
+        [t + 0.32, touch + 0.1, release, release + 0.7],
+        &[(SpinePitch, 0.17), (PelvisPitch, 0.06), (HipsForward, 0.06), (HeadPitch, -0.08)],
+    );
     stumble(scene, t, touch);
     let now = scene.actors[0].t();
     scene.contact((0, LeftHand), (1, Torso), now + touch, now + release);
@@ -50,7 +59,28 @@ fn stumble(scene: &mut Scene, t: f32, touch: f32) {
     b.pose([touch + 0.25, touch + 0.6, touch + 0.7, touch + 1.2], &[(SpinePitch, 0.18), (HipsUp, -0.03)]);
     // Arms fly up for balance.
     let fling = [touch + 0.03, touch + 0.3, touch + 0.4, touch + 1.1];
-    b.pose(fling, &[(AbductLeft, 0.42), (AbductRight, 0.48), (FlexLeft, 0.55), (FlexRight, 0.45), (ElbowLeft, 0.6), (ElbowRight, 0.7)]);
+    b.pose(
+        fling,
+        &[
+            (AbductLeft, 0.42),
+            (AbductRight, 0.48),
+            (FlexLeft, 0.55),
+            (FlexRight, 0.45),
+            (ElbowLeft, 0.6),
+            (ElbowRight, 0.7),
+        ],
+    );
     let complain = [t + 1.45, t + 1.75, t + 1.85, t + 2.25];
-    b.pose(complain, &[(AbductLeft, 0.22), (AbductRight, 0.25), (ElbowLeft, 0.8), (ElbowRight, 0.85), (ShrugLeft, 0.08), (ShrugRight, 0.08), (FlexLeft, 0.12)]);
+    b.pose(
+        complain,
+        &[
+            (AbductLeft, 0.22),
+            (AbductRight, 0.25),
+            (ElbowLeft, 0.8),
+            (ElbowRight, 0.85),
+            (ShrugLeft, 0.08),
+            (ShrugRight, 0.08),
+            (FlexLeft, 0.12),
+        ],
+    );
 }

@@ -18,11 +18,19 @@ use crate::samples::scene::{BOX, Scene};
 pub(super) fn scenes() -> Vec<Scene> {
     let turns = [-70f32.to_radians(), -100f32.to_radians()];
     let places = [Ground::IDENTITY, Ground::new(Vec2::new(0.25, 1.08), PI + 0.22)];
-    let mut all = both(&Encounter { name: "talk", labels: &["friendly", "talk"], places: &places, turns: &turns, play: chat });
+    let mut all =
+        both(&Encounter { name: "talk", labels: &["friendly", "talk"], places: &places, turns: &turns, play: chat });
     let turns = [80f32.to_radians(), 60f32.to_radians()];
-    let argue = Encounter { name: "argue", labels: &["hostile", "talk"], places: &facing(0.95), turns: &turns, play: argue };
+    let argue =
+        Encounter { name: "argue", labels: &["hostile", "talk"], places: &facing(0.95), turns: &turns, play: argue };
     all.extend(both(&argue));
-    let long = Encounter { name: "talk-long", labels: &["friendly", "talk"], places: &facing(1.12), turns: &turns, play: long_chat };
+    let long = Encounter {
+        name: "talk-long",
+        labels: &["friendly", "talk"],
+        places: &facing(1.12),
+        turns: &turns,
+        play: long_chat,
+    };
     all.push(meet(&long, Coming::Standing));
     all.push(pass_box(Coming::Walking));
     all.push(pass_box(Coming::Standing));
@@ -32,7 +40,8 @@ pub(super) fn scenes() -> Vec<Scene> {
 /// One hand speaks: up in front, two or three beats, down.
 pub(super) fn gesticulate(a: &mut Actor, side: Foot, t: f32, beats: usize) {
     let s = if side == Left { 1.0 } else { -1.0 };
-    let at = |x: f32, y: f32, z: f32| grip(Relative::Chest, [s * x, y, z], [s * -0.35, 0.25, 1.0], [s * -0.55, 0.75, 0.0]);
+    let at =
+        |x: f32, y: f32, z: f32| grip(Relative::Chest, [s * x, y, z], [s * -0.35, 0.25, 1.0], [s * -0.55, 0.75, 0.0]);
     let mut grips = vec![(t + 0.1, at(0.22, -0.22, 0.28))];
     for i in 0..beats {
         let b = t + 0.45 + 0.36 * i as f32;
@@ -138,7 +147,12 @@ fn between(side: Foot, below: f32) -> Grip {
 fn hand_over(a: &mut Actor, begun: f32, give: f32, taken: f32) {
     for side in [Left, Right] {
         let open = Grip { palm: between(side, 0.0).palm * Vec3::new(1.35, 1.0, 0.72), ..between(side, 0.0) };
-        let grips = vec![(give - 0.65, held(side)), (give, between(side, -0.01)), (taken, between(side, -0.01)), (taken + 0.3, open)];
+        let grips = vec![
+            (give - 0.65, held(side)),
+            (give, between(side, -0.01)),
+            (taken, between(side, -0.01)),
+            (taken + 0.3, open),
+        ];
         a.reach_with(side, [begun, begun + 1.0, taken + 0.15, taken + 0.75], grips, ELBOW_CARRY);
     }
     laden(a, [begun, begun + 1.0, give, taken + 0.5]);
@@ -148,7 +162,12 @@ fn hand_over(a: &mut Actor, begun: f32, give: f32, taken: f32) {
 fn take_over(b: &mut Actor, t: f32, give: f32, taken: f32) {
     for side in [Left, Right] {
         let open = Grip { palm: between(side, 0.0).palm * Vec3::new(1.4, 1.0, 0.75), ..between(side, 0.0) };
-        let grips = vec![(give - 0.45, open), (give, between(side, 0.01)), (taken, between(side, 0.01)), (taken + 0.65, held(side))];
+        let grips = vec![
+            (give - 0.45, open),
+            (give, between(side, 0.01)),
+            (taken, between(side, 0.01)),
+            (taken + 0.65, held(side)),
+        ];
         b.reach_with(side, [t, t + 0.55, 1e3, 1e3 + 1.0], grips, ELBOW_CARRY);
     }
     laden(b, [give, taken + 0.4, 1e3, 1e3 + 1.0]);

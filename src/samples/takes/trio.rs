@@ -22,10 +22,22 @@ fn ring(radius: f32) -> [Ground; 3] {
 pub(super) fn scenes() -> Vec<Scene> {
     let turns = [100f32, 85.0, 95.0].map(f32::to_radians);
     let places = ring(0.74);
-    let mut all = both(&Encounter { name: "trio-talk", labels: &["friendly", "talk", "three"], places: &places, turns: &turns, play: talk });
+    let mut all = both(&Encounter {
+        name: "trio-talk",
+        labels: &["friendly", "talk", "three"],
+        places: &places,
+        turns: &turns,
+        play: talk,
+    });
     let turns = [-90f32, -100.0, -85.0].map(f32::to_radians);
     let places = ring(0.95);
-    all.extend(both(&Encounter { name: "trio-greet", labels: &["friendly", "three"], places: &places, turns: &turns, play: greet }));
+    all.extend(both(&Encounter {
+        name: "trio-greet",
+        labels: &["friendly", "three"],
+        places: &places,
+        turns: &turns,
+        play: greet,
+    }));
     all
 }
 

@@ -66,10 +66,7 @@ fn poses_at_ports_of_a_group_are_alike() {
         }
     }
     let names: Vec<_> = groups.keys().map(String::as_str).collect();
-    assert_eq!(
-        names,
-        ["carry_stand", "carry_walk_left", "carry_walk_right", "stand", "walk_left", "walk_right"]
-    );
+    assert_eq!(names, ["carry_stand", "carry_walk_left", "carry_walk_right", "stand", "walk_left", "walk_right"]);
     for (name, ports) in &groups {
         let (angles, gap) = if name.ends_with("stand") { (5.0, 0.02) } else { (16.0, 0.06) };
         for joint in 0..JOINT_COUNT {
@@ -84,7 +81,8 @@ fn poses_at_ports_of_a_group_are_alike() {
             let mean: Vec3 = ports.iter().map(|p| p.2[foot]).sum::<Vec3>() / ports.len() as f32;
             for (place, _, feet) in ports {
                 // The swinging foot passes at different speeds.
-                let swinging = name.ends_with(["right", "left"][foot]) != name.ends_with("stand") && !name.ends_with("stand");
+                let swinging =
+                    name.ends_with(["right", "left"][foot]) != name.ends_with("stand") && !name.ends_with("stand");
                 let limit = if swinging { 2.5 * gap } else { gap };
                 assert!((feet[foot] - mean).length() < limit, "{name}: foot {foot} at {place}: {}", feet[foot] - mean);
             }

@@ -14,7 +14,10 @@ fn joints_turn_at_human_speeds() {
                 for j in 0..JOINT_COUNT {
                     let speed = clip.pose(f)[j].angle_between(clip.pose(f - 1)[j]).to_degrees() * 60.0;
                     if speed > worst.0 {
-                        worst = (speed, format!("{} {} at {:.2} s", clip.name, canonical().joints[j].name, f as f32 / 60.0));
+                        worst = (
+                            speed,
+                            format!("{} {} at {:.2} s", clip.name, canonical().joints[j].name, f as f32 / 60.0),
+                        );
                     }
                 }
             }
@@ -86,6 +89,7 @@ fn no_foot_sinks_into_the_floor_and_swings_bend_the_knee() {
         }
     }
     let (_, globals) = TAKES.iter().find(|(t, _)| t.file.name == "walk-normal").unwrap();
-    let peak = globals[0].iter().map(|g| flexion(g, [LEFT_UP_LEG, LEFT_LEG, LEFT_FOOT], Vec3::NEG_Z)).fold(0.0, f32::max);
+    let peak =
+        globals[0].iter().map(|g| flexion(g, [LEFT_UP_LEG, LEFT_LEG, LEFT_FOOT], Vec3::NEG_Z)).fold(0.0, f32::max);
     assert!((52.0..72.0).contains(&peak), "{peak}");
 }
