@@ -151,7 +151,9 @@ impl Actor {
         let (t0, span) = (self.t(), START);
         let at = |u: f32| t0 + u * secs(span);
         let (t1, t2) = (at(1.0), at(1.0) + secs(gait.half));
-        self.plan.speeds.extend([(at(0.1), 0.0), (t1 + 0.55 * secs(gait.half), gait.speed)]);
+        // Who turns far turns first.
+        let delay = 0.1 + 0.22 * (turn.abs() / std::f32::consts::FRAC_PI_2).min(1.2);
+        self.plan.speeds.extend([(at(delay), 0.0), (t1 + 0.60 * secs(gait.half), gait.speed)]);
         self.turn(turn, at(0.12), t2 - 0.1 * secs(gait.half));
         self.phase.mid_stance(t0, foot != Foot::Left);
         self.phase.mid_stance(t1, foot == Foot::Left);

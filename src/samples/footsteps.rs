@@ -17,7 +17,7 @@ const ANKLE: f32 = 0.075;
 const WALK_HALF_WIDTH: f32 = 0.055;
 const STAND_HALF_WIDTH: f32 = 0.098;
 /// The most the toes bend, radians.
-const TOE_LIMIT: f32 = 0.75;
+const TOE_LIMIT: f32 = 0.87;
 
 /// How a foot is placed relative to the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,30 +94,14 @@ impl Feet {
         self.stances.iter().map(|s| ramp(t, s.strike, s.loaded) * (1.0 - ramp(t, s.unload, s.toe_off))).sum()
     }
 
-    /// The stance at `t`, or the last one before it.
-    pub fn stance(&self, t: f32) -> &Stance {
-        let next = self.stances.partition_point(|s| s.strike <= t);
-        &self.stances[next.saturating_sub(1)]
-    }
-
-    /// Where the feet's middle of support is on the ground at `t`, swinging feet included.
-    pub fn ground(&self, t: f32) -> Vec2 {
-        let p = self.pose(t).ankle;
-        Vec2::new(p.x, p.z)
-    }
-
     /// The foot at `t`; `lift` raises the heel of a planted foot further (radians).
-    pub fn pose_lifted(&self, t: f32, lift: f32) -> FootPose {
+    pub fn pose(&self, t: f32, lift: f32) -> FootPose {
         let next = self.stances.partition_point(|s| s.strike <= t);
         let now = &self.stances[next.saturating_sub(1)];
         match self.stances.get(next) {
             Some(after) if t > now.toe_off => swing(now, after, t),
             _ => planted(now, t, lift),
         }
-    }
-
-    pub fn pose(&self, t: f32) -> FootPose {
-        self.pose_lifted(t, 0.0)
     }
 }
 

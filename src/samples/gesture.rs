@@ -140,6 +140,9 @@ fn solve(body: &Body, side: Foot, goal: Goal, elbow_left: Vec3) -> ArmPose {
     let pole = chest * Vec3::new(elbow_left.x * sign, elbow_left.y, elbow_left.z);
     let wrist = goal.palm - goal.rotation * (Vec3::X * sign * PALM);
     let shoulder = body.position(upper);
+    // An elbow that would point along the arm gives way to the back.
+    let along = pole.normalize().dot((wrist - shoulder).normalize_or_zero()).abs();
+    let pole = pole.normalize() + chest * Vec3::new(0.2 * sign, 0.0, -1.0) * (0.9 * along.powi(3));
     let (elbow, end) = bend(shoulder, wrist, bone_length(lower), bone_length(hand), pole, 0.995);
     // The elbow is behind the line from shoulder to wrist; the hinge's z looks to its front.
     let front = (shoulder + end) * 0.5 - elbow;

@@ -11,7 +11,7 @@ use super::gesture::{hanging, set_arm};
 use super::path::Path;
 use super::posture::{Body, Channel, Channels, side_sign};
 use super::timeline::{Wander, blur, lerp, signed, unit};
-use crate::geom::{Turn, wrap_angle};
+use crate::geom::{Ground, Turn, wrap_angle};
 use crate::motion::{Clip, Foot, canonical, joint::*};
 
 /// Frames per second of the written captures.
@@ -106,31 +106,33 @@ fn prepare(actor: &Actor, path: &Path, end: i32) -> Vec<Frame> {
     };
     let shares = blur(&times.iter().map(|&t| share(t)).collect::<Vec<_>>(), 0.055 * RATE as f32);
     let speeds = blur(&times.iter().map(|&t| path.speed(t)).collect::<Vec<_>>(), 0.10 * RATE as f32);
-    times
-        .iter()
-        .zip(shares)
-        .zip(speeds)
-        .map(|((&t, share), speed)| prepare_frame(actor, path, t, share, speed))
-        .collect()
+    let mut frames: Vec<Frame> =
+        times.iter().zip(&shares).zip(speeds).map(|((&t, _), speed)| prepare_frame(actor, path, t, speed)).collect();
+    let sways: Vec<f32> = frames.iter().zip(shares).map(|(f, share)| sway(f, path.at(f.t), share)).collect();
+    for (frame, sway) in frames.iter_mut().zip(blur(&sways, 0.04 * RATE as f32)) {
+        frame.hips += Turn::from_angle(path.at(frame.t).heading).apply(Vec2::new(sway, 0.0));
+    }
+    frames
 }
 
-fn prepare_frame(actor: &Actor, path: &Path, t: f32, left_share: f32, speed: f32) -> Frame {
+/// The hips lean over the foot that carries, less so the faster the walk.
+fn sway(f: &Frame, at: Ground, left_share: f32) -> f32 {
+    let back = Turn::from_angle(-at.heading);
+    let [left, right] = f.feet.map(|foot| back.apply(Vec2::new(foot.ankle.x, foot.ankle.z) - at.position).x);
+    let half_width = (0.5 * (left - right)).clamp(0.03, 0.10);
+    lerp(0.62, 0.40, (f.speed / 1.1).min(1.0)) * (2.0 * left_share - 1.0) * half_width
+}
+
+fn prepare_frame(actor: &Actor, path: &Path, t: f32, speed: f32) -> Frame {
     let mut channels = Channels::default();
     for p in &actor.pulses {
         channels[p.channel] += p.amount * p.span.weight(t);
     }
     let gait = gait_pose(actor.phase.at(t), speed);
     let lifts = [channels[Channel::HeelUpLeft], channels[Channel::HeelUpRight]];
-    let feet = [0, 1].map(|i| actor.feet[i].pose_lifted(t, lifts[i]));
+    let feet = [0, 1].map(|i| actor.feet[i].pose(t, lifts[i]));
     let at = path.at(t);
-    // The hips lean over the foot that carries, less so the faster the walk.
-    let back = Turn::from_angle(-at.heading);
-    let lateral = [0, 1].map(|i| back.apply(actor.feet[i].stance(t).place.position - at.position).x);
-    let support = left_share * lateral[0] + (1.0 - left_share) * lateral[1];
-    let middle = 0.5 * (lateral[0] + lateral[1]);
-    let give = lerp(0.62, 0.40, (speed / 1.1).min(1.0));
-    let sway = (give * (support - middle)).clamp(-0.07, 0.07);
-    let local = Vec2::new(sway + channels[Channel::HipsLeft], channels[Channel::HipsForward]);
+    let local = Vec2::new(channels[Channel::HipsLeft], channels[Channel::HipsForward]);
     let pelvis = Quat::from_rotation_y(at.heading + gait.pelvis_yaw + channels[Channel::PelvisYaw])
         * Quat::from_rotation_x(0.035 + gait.pelvis_pitch + channels[Channel::PelvisPitch])
         * Quat::from_rotation_z(gait.pelvis_roll + channels[Channel::PelvisRoll]);

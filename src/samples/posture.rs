@@ -164,12 +164,16 @@ fn frame(up: Vec3, forward: Vec3) -> Quat {
     Quat::from_mat3(&Mat3::from_cols(y.cross(z), y, z))
 }
 
+/// The most a knee or an elbow bends, radians.
+const FOLD: f32 = 2.5;
+
 /// The middle and end of a two-bone limb from `root` towards `target`, bent towards `pole`.
 ///
 /// At most `stretch` of the limb's length is used; a target further away is pointed at.
 pub(super) fn bend(root: Vec3, target: Vec3, upper: f32, lower: f32, pole: Vec3, stretch: f32) -> (Vec3, Vec3) {
     let line = (target - root).try_normalize().unwrap_or(Vec3::NEG_Y);
-    let reach = (target - root).length().clamp((upper - lower).abs() + 0.02, (upper + lower) * stretch);
+    let folded = (upper * upper + lower * lower - 2.0 * upper * lower * (std::f32::consts::PI - FOLD).cos()).sqrt();
+    let reach = (target - root).length().clamp(folded, (upper + lower) * stretch);
     let side = (pole - line * pole.dot(line)).try_normalize().unwrap_or_else(|| line.any_orthonormal_vector());
     let along = (upper * upper - lower * lower + reach * reach) / (2.0 * reach);
     let out = (upper * upper - along * along).max(0.0).sqrt();

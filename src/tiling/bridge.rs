@@ -58,6 +58,8 @@ const TOP_SPEED: f32 = 1.7;
 const SLACK: f32 = 0.5;
 const SINGLE_REACH: f32 = 0.9;
 const PAIR_REACH: f32 = 1.2;
+const EASY_REACH: f32 = 0.45;
+const EASY_TURN: f32 = 0.6;
 const MAX_TURN: f32 = std::f32::consts::FRAC_PI_3;
 /// A state this close to a wall leads nowhere.
 const WALL_ROOM: f32 = 0.3;
@@ -220,11 +222,8 @@ impl Bridge {
     }
 
     fn try_close(&mut self, view: View, closing: &Closing, from: Port, to: Port) -> Option<Vec<Piece>> {
-        let end = from.at.then(closing.strand.exit());
         let reach = if closing.roles[1].is_some() { PAIR_REACH } else { SINGLE_REACH };
-        let near = end.position.distance_squared(to.at.position) < reach * reach
-            && wrap_angle(end.heading - to.at.heading).abs() < MAX_TURN;
-        if !near || !closing.strand.deform(from.at, to.at, &view.library.limits, &mut self.path) {
+        if !ends_near(closing, from, to, reach, MAX_TURN) || !closing.strand.deform(from.at, to.at, &view.library.limits, &mut self.path) {
             return None;
         }
         let pieces = split(view, closing, &self.path, from.tick, to.tick)?;
@@ -244,6 +243,19 @@ impl Bridge {
         pieces.extend(last);
         pieces
     }
+}
+
+fn ends_near(closing: &Closing, from: Port, to: Port, reach: f32, turn: f32) -> bool {
+    let end = from.at.then(closing.exit);
+    end.position.distance_squared(to.at.position) < reach * reach && wrap_angle(end.heading - to.at.heading).abs() < turn
+}
+
+/// Number of strands that lead from one port to another with little deformation: how easy the bridge will be.
+pub(super) fn easy_closings(library: &Library, from: Port, to: Port) -> usize {
+    let left = to.tick - from.tick;
+    let closings = &library.closings[from.group as usize * library.set.groups.len() + to.group as usize];
+    let easy = |c: &&Closing| c.ticks.0 <= left && left <= c.ticks.1 && ends_near(c, from, to, EASY_REACH, EASY_TURN);
+    closings.iter().filter(easy).count()
 }
 
 /// Cuts a deformed strand into the pieces of its roles, sharing out the ticks in proportion to the sources'.
@@ -295,47 +307,4 @@ fn key(p: &Port) -> (i32, i32, i32, i32, u32) {
     let heading = (wrap_angle(p.at.heading).to_degrees() / 20.0).round() as i32;
     let (x, z) = (p.at.position.x / 0.25, p.at.position.y / 0.25);
     (x.round() as i32, z.round() as i32, heading, p.tick.div_euclid(5), p.group)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::tiling::Scene;
-    use glam::Vec2;
-    use rand::SeedableRng;
-
-    #[test]
-    fn stat() {
-        let set = crate::patch::cut_folder(std::path::Path::new("target/pipeline/captures"), None).unwrap();
-        let library = Library::new(&set, crate::deform::Limits::TIGHT);
-        let domain = Domain::new(&Scene::demo()).unwrap();
-        let occupancy = Occupancy::new(&domain, &library);
-        let view = View { library: &library, domain: &domain, occupancy: &occupancy };
-        let mut bridge = Bridge::default();
-        let mut rng = ChaCha8Rng::seed_from_u64(1);
-        let names: Vec<&str> = set.groups.iter().map(|g| g.name.as_str()).collect();
-        let g = |n: &str| names.iter().position(|x| *x == n).unwrap() as u32;
-        for (a, b) in [("stand", "stand"), ("stand", "walk_left"), ("walk_left", "stand"), ("walk_left", "walk_left"), ("walk_left", "walk_right")] {
-            eprintln!("{a} {b} least {} closings {} moves {}", library.least_ticks(g(a), g(b)), library.closings[g(a) as usize * names.len() + g(b) as usize].len(), library.forward[g(a) as usize].len());
-            for ticks in [30, 45, 60, 75, 90, 120, 150] {
-                for speed in [0.2, 0.5, 0.9] {
-                    let (mut ok, mut n, mut nodes) = (0, 0, 0);
-                    let t = std::time::Instant::now();
-                    for _ in 0..60 {
-                        let at = Ground::new(Vec2::splat(6.0), rng.random_range(-3.0..3.0));
-                        let from = Port { at, tick: 100, group: g(a) };
-                        let d = speed * ticks as f32 / 30.0;
-                        let x: f32 = rng.random_range(-0.7..0.7);
-                        let to = at.then(Ground::new(Vec2::new(x.sin(), x.cos()) * d, x * 2.0));
-                        let to = Port { at: to, tick: 100 + ticks, group: g(b) };
-                        n += 1;
-                        ok += bridge.search(view, from, Goal::Port(to), Taste { calm: 1.3, expansions: 60 }, &mut rng).is_some() as i32;
-                        nodes += bridge.nodes.len();
-                    }
-                    eprint!("  {ticks} {speed} {ok}/{n} nodes {} {:?};", nodes / n as usize, t.elapsed() / n as u32);
-                }
-                eprintln!();
-            }
-        }
-    }
 }

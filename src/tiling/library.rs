@@ -13,10 +13,6 @@ use crate::patch::{PatchSet, fastest_turns};
 const MARGIN: f32 = 0.02;
 /// Warped in time, a joint may turn this much faster than the captures' fastest.
 const RUSH: f32 = 1.1;
-/// A closing that leads this far leads somewhere, metres.
-const SOME_WAY: f32 = 0.4;
-/// What a way takes between pose groups that no two kinds connect, ticks.
-const LONG_TICKS: i32 = 90;
 /// Longest strand of two single-person kinds that closes a gap, in frames.
 const MAX_STRAND_FRAMES: usize = 110;
 
@@ -69,6 +65,8 @@ pub(super) struct Closing {
     pub roles: [Option<u32>; 2],
     /// Path of both.
     pub strand: Strand,
+    /// Where it ends if not deformed, seen from where it begins.
+    pub exit: Ground,
     /// Fewest and most ticks.
     pub ticks: (i32, i32),
 }
@@ -91,7 +89,6 @@ pub(super) struct Library<'a> {
     pub backward: Vec<Vec<Move>>,
     /// By entry group * groups + exit group.
     pub closings: Vec<Vec<Closing>>,
-    least_ticks: Vec<i32>,
     /// Fastest turn of each joint in the captures, radians per frame.
     pub fastest: [f32; JOINT_COUNT],
     /// Largest reach of any footprint.
@@ -119,10 +116,7 @@ impl<'a> Library<'a> {
             backward[role.exit_group as usize].push(step(role.exit.inverse(), role.entry_group));
         }
         let closings = closings(&roles, groups, is_single);
-        let walked = |c: &&Closing| c.strand.exit().position.length() > SOME_WAY;
-        let least = |c: &Vec<Closing>| c.iter().filter(walked).map(|c| c.ticks.0).min().unwrap_or(LONG_TICKS);
         Self {
-            least_ticks: closings.iter().map(least).collect(),
             set,
             limits,
             first_role,
@@ -137,11 +131,6 @@ impl<'a> Library<'a> {
             max_reach: roles.iter().flat_map(|r| &r.reach).copied().fold(0.0, f32::max),
             roles,
         }
-    }
-
-    /// Fewest ticks in which single-person kinds lead from one pose group to another over some way.
-    pub fn least_ticks(&self, from: u32, to: u32) -> i32 {
-        self.least_ticks[from as usize * self.set.groups.len() + to as usize]
     }
 
     /// The roles of a kind.
@@ -194,7 +183,7 @@ fn closings(roles: &[Role], groups: usize, is_single: impl Fn(&Role) -> bool) ->
         let ticks = ranges.fold((0, 0), |sum, range| (sum.0 + range.0, sum.1 + range.1));
         let (from, to) = (roles[first].entry_group, roles[second.unwrap_or(first)].exit_group);
         let roles = [Some(first as u32), second.map(|s| s as u32)];
-        table[from as usize * groups + to as usize].push(Closing { roles, strand, ticks });
+        table[from as usize * groups + to as usize].push(Closing { roles, exit: strand.exit(), strand, ticks });
     };
     for (i, first) in strands.iter().enumerate() {
         let Some(first) = first else { continue };

@@ -37,10 +37,10 @@ fn action(name: &str, frames: i32, gesture: fn(&mut Actor)) -> Scene {
 }
 
 fn watch(a: &mut Actor) {
-    let look = grip(Relative::Chest, [-0.02, -0.08, 0.30], [-1.0, 0.12, 0.10], [0.0, -0.75, -0.6]);
+    let look = grip(Relative::Chest, [-0.02, -0.03, 0.31], [-1.0, 0.15, 0.10], [0.0, -0.75, -0.6]);
     a.reach_with(Left, [0.05, 0.65, 1.25, 1.85], vec![(0.0, look)], Vec3::new(0.8, -1.0, -0.1));
-    a.look([0.25, 0.7, 1.2, 1.7], Sight::Beside(Vec3::new(0.05, 1.15, 0.40)));
-    a.pose([0.2, 0.7, 1.2, 1.8], &[(SpinePitch, 0.05), (HeadPitch, 0.10), (HipsLeft, -0.012)]);
+    a.look([0.25, 0.7, 1.2, 1.7], Sight::Beside(Vec3::new(0.08, 1.26, 0.52)));
+    a.pose([0.2, 0.7, 1.2, 1.8], &[(SpinePitch, 0.05), (HeadPitch, 0.03), (HipsLeft, -0.012)]);
 }
 
 fn wave(a: &mut Actor) {
@@ -101,18 +101,9 @@ fn tie_shoe() -> Scene {
     let origin = a.now;
     a.shift(Vec2::new(0.0, -0.13), 0.0, 0.6);
     a.step_from(Right, origin, Ground::new(Vec2::new(-0.02, -0.44), 0.0), 15);
-    let kneel = [-0.15, 0.60, 1.75, 2.55];
-    a.pose(
-        kneel,
-        &[
-            (HipsUp, -0.47),
-            (PelvisPitch, 0.22),
-            (SpinePitch, 0.55),
-            (HeelUpRight, 0.95),
-            (KneeOutLeft, 0.12),
-            (HeadPitch, 0.05),
-        ],
-    );
+    let kneel = [-0.2, 0.72, 1.75, 2.60];
+    a.pose(kneel, &[(HipsUp, -0.47), (PelvisPitch, 0.22), (SpinePitch, 0.55), (KneeOutLeft, 0.12), (HeadPitch, 0.05)]);
+    a.pulse(HeelUpRight, [0.0, 0.72, 1.55, 2.15], 0.95);
     for (side, s) in [(Left, 1.0), (Right, -1.0)] {
         let at = |x: f32, y: f32| {
             grip(Relative::World, [0.105 + s * x, y, 0.10], [s * -0.5, -0.75, 0.45], [s * -0.9, -0.3, 0.0])
@@ -158,7 +149,7 @@ fn sit() -> Scene {
     let right =
         vec![(0.4, ground), (down + 0.1, ground), (down + 0.75, knee(-1.0)), (up - 0.5, knee(-1.0)), (up, ground)];
     a.reach(Right, [0.35, 1.1, up + 0.45, up + 1.25], right);
-    a.reach(Left, [0.3, 1.0, up + 0.5, up + 1.3], vec![(0.5, knee(1.0))]);
+    a.reach(Left, [0.3, 1.0, up - 0.4, up + 0.35], vec![(0.5, knee(1.0))]);
     a.stand(30 * 5);
     let to = a.now;
     a.stand(20);

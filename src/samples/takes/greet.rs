@@ -15,7 +15,7 @@ use crate::samples::scene::Scene;
 
 const SHAKE: f32 = 0.88;
 const FIVE: f32 = 0.84;
-const HUG: f32 = 0.44;
+const HUG: f32 = 0.37;
 
 fn rad(degrees: f32) -> f32 {
     degrees.to_radians()
@@ -115,51 +115,46 @@ fn bow(scene: &mut Scene, t: f32) -> f32 {
 
 /// Right arm over, left arm under.
 fn hug(scene: &mut Scene, t: f32) -> f32 {
-    let (touch, release) = (t + 0.85, t + 1.65);
+    let (touch, release) = (t + 0.80, t + 1.45);
     for (i, a) in scene.actors.iter_mut().enumerate() {
         // The other's middle in this one's frame is a little to one side.
         let side = if i == 0 { 0.07 } else { -0.07 };
-        let _ = i;
         let over = |open: f32| {
-            grip(
-                Path,
-                [0.02 - 0.30 * open + side, 1.33 + 0.16 * open, HUG + 0.085 - 0.22 * open],
-                [1.0 - open, -0.25 + 0.3 * open, -0.1 + 1.1 * open],
-                [0.5 * open, 0.0, -1.0 + open],
-            )
+            let palm = [side - 0.02 - 0.26 * open, 1.395 + 0.095 * open, HUG + 0.075 - 0.20 * open];
+            grip(Path, palm, [0.8 - 0.8 * open, -0.5 + 0.6 * open, 0.1 + 0.9 * open], [0.5 * open, -0.4, -1.0 + open])
         };
         let under = |open: f32| {
-            grip(
-                Path,
-                [-0.01 + 0.36 * open + side, 1.13 + 0.06 * open, HUG + 0.10 - 0.22 * open],
-                [-1.0 + open, 0.1, -0.1 + 1.1 * open],
-                [-0.5 * open, 0.0, -1.0 + open],
-            )
+            let palm = [side + 0.09 + 0.27 * open, 1.14 + 0.04 * open, HUG + 0.115 - 0.20 * open];
+            grip(Path, palm, [-1.0 + open, 0.1, 0.1 + 0.9 * open], [-0.5 * open, 0.0, -1.0 + open])
         };
         let times = [t, t + 0.5, release, release + 0.6];
-        a.reach_with(
-            Right,
-            times,
-            vec![(t + 0.15, over(1.0)), (touch, over(0.0)), (release, over(0.0)), (release + 0.35, over(1.0))],
-            Vec3::new(1.0, 0.15, 0.1),
-        );
-        a.reach_with(
-            Left,
-            times,
-            vec![(t + 0.15, under(1.0)), (touch, under(0.0)), (release, under(0.0)), (release + 0.35, under(1.0))],
-            Vec3::new(1.0, -0.55, 0.1),
-        );
+        let above = grip(Path, [side - 0.18, 1.56, HUG - 0.02], [0.3, 0.0, 1.0], [0.4, -1.0, 0.0]);
+        let grips = vec![
+            (t + 0.1, over(1.0)),
+            (t + 0.47, above),
+            (touch, over(0.0)),
+            (release, over(0.0)),
+            (release + 0.22, above),
+            (release + 0.45, over(1.0)),
+        ];
+        a.reach_with(Right, times, grips, Vec3::new(1.0, 0.45, -0.1));
+        let flank = grip(Path, [side + 0.28, 1.15, HUG + 0.03], [-0.1, 0.1, 1.0], [-1.0, 0.0, 0.0]);
+        let grips = vec![
+            (t + 0.1, under(1.0)),
+            (t + 0.47, flank),
+            (touch, under(0.0)),
+            (release, under(0.0)),
+            (release + 0.22, flank),
+            (release + 0.45, under(1.0)),
+        ];
+        a.reach_with(Left, times, grips, Vec3::new(1.0, -0.35, -0.1));
         a.pose(
             [t + 0.2, touch, release, release + 0.5],
-            &[
-                (SpinePitch, 0.10),
-                (PelvisPitch, 0.07),
-                (SpineRoll, 0.11),
-                (HeadRoll, 0.06),
-                (HeadYaw, 0.15),
-                (HipsForward, 0.005),
-            ],
+            &[(SpinePitch, 0.10), (PelvisPitch, 0.07), (HeadYaw, 0.15), (HipsForward, 0.005)],
         );
+        // The heads pass each other to the side, and stay there until the bodies are apart.
+        a.pose([t + 0.1, touch - 0.15, release + 0.2, release + 0.7], &[(SpineRoll, 0.13), (HeadRoll, 0.09)]);
+        step_apart(a, release);
         // Pats the back.
         a.pose([touch + 0.25, touch + 0.4, touch + 0.45, touch + 0.6], &[(SpinePitch, 0.012)]);
     }
@@ -168,12 +163,23 @@ fn hug(scene: &mut Scene, t: f32) -> f32 {
         scene.contact((a, RightHand), (b, Torso), now + touch, now + release);
         scene.contact((a, LeftHand), (b, Torso), now + touch, now + release);
     }
-    2.25
+    2.55
+}
+
+/// Two short steps back.
+fn step_apart(a: &mut Actor, t: f32) {
+    let (began, back) = (a.now, Vec2::new(0.0, -0.20));
+    a.shift(back, t - 0.05, 0.75);
+    a.now = began + (t * 30.0).round() as i32;
+    // The left foot first: the weight, and with it the head, goes to the right, away from the other's.
+    a.step_from(Left, began, Ground::new(back, 0.0), 11);
+    a.step_from(Right, began, Ground::new(back, 0.0), 11);
+    a.now = began;
 }
 
 /// Two people walk past each other and slap hands.
 fn five_in_passing() -> Scene {
-    let (aside, ahead) = (0.33, 0.20);
+    let (aside, ahead) = (0.33, 0.27);
     let places =
         [Ground::new(Vec2::new(aside, -ahead), 0.0), Ground::new(Vec2::new(-aside, ahead), std::f32::consts::PI)];
     let mut entries = Vec::new();
@@ -195,10 +201,10 @@ fn five_in_passing() -> Scene {
             (-0.75, up),
             (-0.45, up),
             (-0.05, slap),
-            (0.06, slap),
-            (0.40, grip(Path, [-0.30, 1.30, 0.12], [-0.1, 0.9, 0.5], [0.2, -0.4, 1.0])),
+            (0.03, slap),
+            (0.30, grip(Path, [-0.31, 1.22, 0.27], [-0.1, 0.4, 0.9], [0.5, -0.4, 0.4])),
         ];
-        a.reach_with(Right, [-0.85, -0.30, 0.08, 0.60], grips, Vec3::new(1.0, -0.9, 0.0));
+        a.reach_with(Right, [-0.85, -0.30, 0.06, 0.75], grips, Vec3::new(1.0, -0.9, 0.0));
         a.look([-1.3, -0.8, 0.05, 0.45], Sight::Person(1 - i));
         a.pose([-0.4, -0.05, 0.06, 0.45], &[(SpineYaw, 0.10), (SpinePitch, 0.02)]);
         a.walk(NORMAL, 2);
@@ -207,7 +213,7 @@ fn five_in_passing() -> Scene {
     let exits: Vec<i32> = actors.iter().map(|a| a.now).collect();
     let mut scene = Scene::new("high-five-passing", actors);
     let hit = scene.actors[0].t() - 34.0 / 30.0;
-    scene.contact((0, RightHand), (1, RightHand), hit - 0.05, hit + 0.06);
+    scene.contact((0, RightHand), (1, RightHand), hit - 0.05, hit + 0.03);
     let roles = [(0, entries[0], exits[0]), (1, entries[1], exits[1])];
     scene.patch("high-five-passing", &["friendly", "walk"], &roles, Some([hit - 0.4, hit + 0.2]));
     scene

@@ -22,19 +22,19 @@ fn push(scene: &mut Scene, t: f32) -> f32 {
     let (touch, release) = (t + 0.62, t + 0.84);
     let a = &mut scene.actors[0];
     for (side, s) in [(Left, 1.0), (Right, -1.0)] {
-        let at = |z: f32, y: f32| grip(Path, [s * 0.11, y, z], [s * -0.1, 0.9, 0.45], [0.0, -0.15, 1.0]);
+        let at = |z: f32, y: f32| grip(Path, [s * 0.085, y, z], [s * -0.1, 0.9, 0.45], [0.0, -0.15, 1.0]);
         let grips = vec![
             (t + 0.1, at(0.22, 1.22)),
             (t + 0.4, at(0.24, 1.25)),
-            (touch, at(APART - 0.165, 1.30)),
-            (release, at(APART - 0.13, 1.31)),
+            (touch, at(APART - 0.12, 1.33)),
+            (release, at(APART - 0.07, 1.34)),
             (release + 0.35, at(0.36, 1.2)),
         ];
         a.reach_with(side, [t, t + 0.40, release + 0.05, release + 0.75], grips, ELBOW);
     }
-    a.pose([t + 0.1, t + 0.42, t + 0.45, touch], &[(SpinePitch, -0.04), (HipsForward, -0.03)]);
+    a.pose([t + 0.0, t + 0.36, t + 0.40, touch + 0.1], &[(SpinePitch, -0.04), (HipsForward, -0.025)]);
     a.pose(
-        [t + 0.4, touch + 0.1, release, release + 0.7],
+        [t + 0.32, touch + 0.1, release, release + 0.7],
         &[(SpinePitch, 0.17), (PelvisPitch, 0.06), (HipsForward, 0.06), (HeadPitch, -0.08)],
     );
     stumble(scene, t, touch);

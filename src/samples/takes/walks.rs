@@ -28,7 +28,8 @@ fn straight(name: &str, gait: Gait, speed: &str) -> Scene {
     let half = a.now;
     a.walk(gait, 1);
     let full = a.now;
-    a.walk(gait, 2);
+    // Nobody stops from a fast walk in one step.
+    a.walk(if gait == FAST { NORMAL } else { gait }, 2);
     a.stop(0.0);
     let label = ["slow", "normal", "fast"][(gait.speed > 1.0) as usize + (gait.speed > 1.3) as usize];
     solo(

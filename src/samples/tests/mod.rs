@@ -1,0 +1,63 @@
+//! What the samples promise, measured on the finished takes.
+
+mod annotation;
+mod bodies;
+mod contacts;
+
+use std::sync::LazyLock;
+
+use glam::{Quat, Vec3};
+
+use super::*;
+
+#[test]
+#[ignore]
+fn dump() {
+    let dir = std::env::var("SAMPLES_OUT").unwrap();
+    write(Path::new(&dir), 1).unwrap();
+}
+
+/// Global joint transforms by frame.
+type Globals = Vec<Vec<(Vec3, Quat)>>;
+
+/// The takes of seed 1, and everybody's joints.
+static TAKES: LazyLock<Vec<(Take, Vec<Globals>)>> = LazyLock::new(|| {
+    let globals = |clip: &Clip| {
+        let mut out = Vec::new();
+        (0..clip.frames())
+            .map(|f| {
+                clip.globals(f, &mut out);
+                out.clone()
+            })
+            .collect()
+    };
+    generate(1).into_iter().map(|take| (take.clone(), take.clips.iter().map(globals).collect())).collect()
+});
+
+fn frame(seconds: f32) -> usize {
+    (seconds * 60.0).round() as usize
+}
+
+#[test]
+fn the_same_seed_writes_the_same_bytes() {
+    assert!(generate(7) == generate(7));
+    assert!(generate(7)[0].clips != generate(8)[0].clips);
+    let take = &generate(7)[0];
+    assert_eq!(bvh::write(&take.clips[0]), bvh::write(&generate(7)[0].clips[0]));
+}
+
+#[test]
+fn written_files_are_what_the_take_names() {
+    let dir = std::env::temp_dir().join(format!("crowdquilt-samples-{}", std::process::id()));
+    let files = write(&dir, 1).unwrap();
+    for file in files.iter().filter(|f| f.extension().is_some_and(|e| e == "json")) {
+        let take: TakeFile = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
+        for person in &take.people {
+            let text = std::fs::read_to_string(dir.join(&person.file)).unwrap();
+            assert!(text.starts_with("HIERARCHY\nROOT hips\n"));
+            let frames: usize = text.lines().find_map(|l| l.strip_prefix("Frames: ")).unwrap().parse().unwrap();
+            assert_eq!(text.lines().skip_while(|l| !l.starts_with("Frame Time")).count() - 1, frames);
+        }
+    }
+    std::fs::remove_dir_all(&dir).unwrap();
+}
