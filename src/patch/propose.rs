@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn standing_is_one_idle_and_the_window_holds() {
         let stand = standing(2.0);
-        let exemplars = boundary::exemplars(&[stand.clone()]);
+        let exemplars = boundary::exemplars(std::slice::from_ref(&stand));
         let (ports, patches) = single("s", &stand, &exemplars, &ProposeOptions::default());
         assert_eq!((ports.len(), patches.len(), patches[0].labels[0].as_str()), (2, 1, "idle"));
         let options = ProposeOptions { within: (0.5, 1.0), ..Default::default() };
