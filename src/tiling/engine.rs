@@ -23,13 +23,13 @@ use crate::patch::PatchSet;
 use crate::{Error, Result};
 
 /// Failed tries in a row after which no further person is wished for.
-const SEED_PATIENCE: usize = 400;
+const SEED_PATIENCE: usize = 4000;
 /// Failed tries in a row after which no further patch of several people is wished for.
-const ENRICH_PATIENCE: usize = 10_000;
+const ENRICH_PATIENCE: usize = 60_000;
 /// Largest share of the people's time in patches of several people that early rounds aim at.
 const BUSIEST: f32 = 0.7;
 /// Tries per person in the sweep through time, and how far ahead of it patches are put, ticks.
-const SWEEP_TRIES: usize = 100;
+const SWEEP_TRIES: usize = 1000;
 const SWEEP_TICKS: i32 = 30;
 /// Rounds of mending.
 const MEND_ROUNDS: usize = 30;

@@ -8,31 +8,24 @@ use glam::Vec2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::bridge::{Goal, Port, Taste};
+use super::bridge::{Goal, Port, Taste, easy_closings};
 use super::library::Role;
 use super::occupancy::{Piece, PieceId};
 use super::tracks::{TrackId, Tracks, Undo, Window};
-use crate::geom::{Ground, complex, wrap_angle};
+use crate::geom::Ground;
 use crate::motion::FPS;
 
 /// How far from an entry its future player may be, metres.
 const CAST_RADIUS: f32 = 2.6;
 /// How long before an entry players are looked for, ticks.
 const CAST_LEAD: i32 = 40;
-/// Shortest way to an entry and back from an exit, ticks; drawn from this range.
-const BRIDGE_TICKS: Range<i32> = 15..50;
 /// How far from where somebody would be anyway a patch is put, metres and radians.
 const JITTER: f32 = 0.5;
 const JITTER_TURN: f32 = 0.8;
 /// Patches drawn to begin before this tick may as well have begun before the first.
 const EARLY_TICKS: i32 = 60;
 /// Longer windows than this are not ripped up, ticks.
-const LONGEST_BRIDGE: i32 = 150;
-/// Faster than this on average no one is asked to be somewhere, m/s.
-const EASY_SPEED: f32 = 1.15;
-/// A turn that costs no time, radians, and what a radian more is worth in metres of way.
-const EASY_TURN: f32 = 0.5;
-const TURN_WAY: f32 = 0.5;
+const LONGEST_BRIDGE: i32 = 110;
 /// Most people who are asked to step aside for a patch.
 const MAX_BYSTANDERS: usize = 4;
 /// Ticks before and after their collision that they may use to do so.
@@ -92,11 +85,11 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
         } else if let Some(joint) = joint {
             // The very numbers of the joint, not ones that differ by rounding.
             entry.at = at;
-            let to = rip_to(tracks, lead_track, joint, &entry, &exit, rng)?;
+            let to = rip_to(tracks, lead_track, &entry, &exit)?;
             Part { track: lead_track, role, entry, exit, keep_before: joint, keep_after: to }
         } else {
-            let from = rip_from(tracks, lead_track, &entry, rng)?;
-            part(lead_track, from, rip_to(tracks, lead_track, from, &entry, &exit, rng)?)
+            let from = rip_from(tracks, lead_track, &entry)?;
+            part(lead_track, from, rip_to(tracks, lead_track, &entry, &exit)?)
         };
         parts.push(part);
     }
@@ -148,73 +141,49 @@ fn player(
     candidates.sort_unstable();
     while !candidates.is_empty() {
         let track = candidates.swap_remove(rng.random_range(0..candidates.len()));
-        let from = rip_from(tracks, track, entry, rng);
-        if let Some((from, to)) = from.and_then(|f| Some((f, rip_to(tracks, track, f, entry, exit, rng)?))) {
+        let from = rip_from(tracks, track, entry);
+        if let Some((from, to)) = from.and_then(|f| Some((f, rip_to(tracks, track, entry, exit)?))) {
             return Some((track, from, to));
         }
     }
     None
 }
 
-/// First piece to rip up so that the person can walk to `entry` in time; 0 if the person begins there.
-fn rip_from(tracks: &Tracks, track: TrackId, entry: &Port, rng: &mut ChaCha8Rng) -> Option<usize> {
-    let latest = entry.tick - rng.random_range(BRIDGE_TICKS);
-    let mut index = tracks.tracks[track].partition_point(|&id| tracks.piece(id).begin <= latest);
-    while index > 1 {
-        index -= 1;
+/// First piece to rip up so that the person can walk to `entry`: where that is easiest; 0 if the person begins there.
+fn rip_from(tracks: &Tracks, track: TrackId, entry: &Port) -> Option<usize> {
+    let mut best = (0, None);
+    for index in (0..tracks.index_before(track, entry.tick)).rev() {
         let from = tracks.port(track, index);
-        if !no_patch_between(tracks, track, from.tick, entry.tick) || entry.tick - from.tick > LONGEST_BRIDGE {
-            return None;
+        if entry.tick - from.tick > LONGEST_BRIDGE || tracks.people_of(tracks.tracks[track][index]) > 1 {
+            return best.1;
         }
-        if in_reach(tracks, &from, entry) {
-            return Some(index);
+        let ease = easy_closings(tracks.library, from, *entry);
+        if ease > best.0 && from.tick > 0 {
+            best = (ease, Some(index));
         }
     }
-    no_patch_between(tracks, track, i32::MIN, entry.tick).then_some(0)
+    best.1.or(Some(0))
 }
 
 /// First piece to keep after the patch; the number of pieces if the rest of the time is planned anew.
-fn rip_to(
-    tracks: &Tracks,
-    track: TrackId,
-    keep_before: usize,
-    entry: &Port,
-    exit: &Port,
-    rng: &mut ChaCha8Rng,
-) -> Option<usize> {
-    let earliest = exit.tick + rng.random_range(BRIDGE_TICKS);
+fn rip_to(tracks: &Tracks, track: TrackId, entry: &Port, exit: &Port) -> Option<usize> {
     let count = tracks.tracks[track].len();
-    let mut index = tracks.tracks[track].partition_point(|&id| tracks.piece(id).begin < earliest).max(keep_before);
-    while index < count {
+    let mut best = (0, None);
+    for index in tracks.index_before(track, exit.tick)..count {
         let to = tracks.port(track, index);
-        if !no_patch_between(tracks, track, entry.tick, to.tick) {
-            return None;
-        }
         if to.tick - exit.tick > LONGEST_BRIDGE {
             break;
         }
-        if in_reach(tracks, exit, &to) {
-            return Some(index);
+        let ease = easy_closings(tracks.library, *exit, to);
+        if ease > best.0 {
+            best = (ease, Some(index));
         }
-        index += 1;
+        if tracks.people_of(tracks.tracks[track][index]) > 1 {
+            break;
+        }
     }
-    no_patch_between(tracks, track, entry.tick, i32::MAX).then_some(count)
-}
-
-/// True if one can walk from one port to the other at ease, turning included.
-fn in_reach(tracks: &Tracks, from: &Port, to: &Port) -> bool {
-    let left = (to.tick - from.tick) as f32 / FPS;
-    let way = to.at.position - from.at.position;
-    if to.tick - from.tick < tracks.library.least_ticks(from.group, to.group) {
-        return false;
-    }
-    let turn = |heading: f32| (wrap_angle(complex::arg(way) - heading).abs() - EASY_TURN).max(0.0);
-    let turning = if way.length() > 0.5 {
-        turn(from.at.heading) + turn(to.at.heading)
-    } else {
-        (wrap_angle(to.at.heading - from.at.heading).abs() - EASY_TURN).max(0.0)
-    };
-    way.length() + TURN_WAY * turning < EASY_SPEED * left
+    let index = best.1.unwrap_or(count);
+    no_patch_between(tracks, track, entry.tick, tracks.port(track, index).tick).then_some(index)
 }
 
 /// True if the person is in no patch of several people at any time between the two ticks.

@@ -217,6 +217,11 @@ impl<'a> Tracks<'a> {
         self.tracks[track].partition_point(|&id| self.piece(id).end <= tick)
     }
 
+    /// Number of pieces of a track that begin before `tick`.
+    pub fn index_before(&self, track: TrackId, tick: i32) -> usize {
+        self.tracks[track].partition_point(|&id| self.piece(id).begin < tick)
+    }
+
     /// Place and heading of a person at a tick within the domain's time.
     pub fn state_at(&self, track: TrackId, tick: i32) -> Ground {
         self.piece(self.tracks[track][self.index_at(track, tick)]).state(tick)
