@@ -50,7 +50,7 @@ pub(super) fn tile(
     let mut tiling = Patchwork::new(&library, domain);
     let preference = prefer::by_size(set);
 
-    anneal::anneal(&mut tiling, &preference, &mut clock, &mut rng);
+    anneal::anneal(&mut tiling, scene.characters, &preference, &mut clock, &mut rng);
     let mut search = search::Search::new(preference);
     search.close(&mut tiling, &mut clock, &mut rng);
     let (chains, bodies, left) = mend(&mut tiling, &mut search, &mut clock, &mut rng);

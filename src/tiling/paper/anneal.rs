@@ -23,6 +23,10 @@ const DELTA_T: f32 = 1.0;
 const T_MIN: f32 = 1e-6;
 /// Failures in a row after which sampling ends: i_max, which the paper does not state.
 const I_MAX: usize = 20_000;
+/// Sampling also ends once the patches hold this share of the wished people's time. The paper controls density by when
+/// sampling ends but does not say how; as Algorithm 2 leads nearly every sampled person to both ends of time, this
+/// much ends in about as many people as are wished for.
+const FILL: f32 = 0.1;
 /// Samples between two looks at the clock.
 const CLOCK_EVERY: usize = 64;
 
@@ -33,12 +37,19 @@ pub(in crate::tiling) fn energy(connected: usize, dangling: usize) -> f32 {
 }
 
 /// Algorithm 1.
-pub(super) fn anneal(tiling: &mut Patchwork, preference: &Preference, clock: &mut Clock, rng: &mut ChaCha8Rng) {
+pub(super) fn anneal(
+    tiling: &mut Patchwork,
+    people: usize,
+    preference: &Preference,
+    clock: &mut Clock,
+    rng: &mut ChaCha8Rng,
+) {
+    let wish = (FILL * people as f32 * tiling.domain.horizon as f32) as usize;
     let mut proposal = Proposal::default();
     let mut temperature = T_MAX; // 1
     let mut i = 0; // 2
     let mut samples = 0_usize;
-    while i < I_MAX {
+    while i < I_MAX && tiling.filled() < wish {
         // 3
         if samples.is_multiple_of(CLOCK_EVERY) && !clock.goes_on(|| tiling.state(Phase::Seed)) {
             return;

@@ -77,6 +77,8 @@ pub(super) struct Patchwork<'a> {
     partners: Vec<PortId>,
     /// N_c of equation 6.
     connected: usize,
+    /// Ticks of all pieces inside the domain's time.
+    filled: usize,
     ports: Ports,
 }
 
@@ -91,6 +93,7 @@ impl<'a> Patchwork<'a> {
             instances: vec![],
             partners: vec![],
             connected: 0,
+            filled: 0,
             ports: Ports::new(domain, library.set.groups.len()),
         }
     }
@@ -103,6 +106,11 @@ impl<'a> Patchwork<'a> {
     /// N_d of equation 6, N(P) of Algorithm 2.
     pub fn dangling(&self) -> usize {
         self.ports.len()
+    }
+
+    /// Ticks of people placed so far.
+    pub fn filled(&self) -> usize {
+        self.filled
     }
 
     /// The set D of Algorithm 2.
@@ -347,6 +355,7 @@ impl<'a> Patchwork<'a> {
     fn commit(&mut self, proposal: &Proposal, done: &[(PieceId, Option<Piece>)]) {
         let pieces: Vec<PieceId> = done.iter().filter(|d| d.1.is_none()).map(|d| d.0).collect();
         for &id in &pieces {
+            self.filled += self.occupancy.piece(id).ticks_inside();
             let needed = 2 * id as usize + 2;
             if self.partners.len() < needed {
                 self.partners.resize(needed, NONE);
@@ -407,6 +416,7 @@ impl<'a> Patchwork<'a> {
             }
         }
         for id in pieces {
+            self.filled -= self.occupancy.piece(id).ticks_inside();
             self.occupancy.hide(id);
             self.occupancy.forget(id);
         }
@@ -450,3 +460,7 @@ impl<'a> Patchwork<'a> {
 fn midpoint(a: Ground, b: Ground) -> Ground {
     Ground::new((a.position + b.position) * 0.5, b.heading + wrap_angle(a.heading - b.heading) * 0.5)
 }
+
+#[cfg(test)]
+#[path = "patchwork_tests.rs"]
+mod tests;

@@ -12,7 +12,7 @@ use crate::motion::FPS;
 use crate::patch::{PatchKind, PatchSet};
 
 /// The preference for each kind.
-pub(in crate::tiling) struct Preference {
+pub(super) struct Preference {
     weights: Vec<f32>,
     cumulative: Vec<f32>,
 }

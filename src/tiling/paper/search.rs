@@ -10,7 +10,7 @@ use super::super::bridge::Port;
 use super::super::engine::Clock;
 use super::super::outcome::Phase;
 use super::patchwork::{Patchwork, Placement, Proposal};
-use super::ports::{ENTRY, EXIT, PortId, Reach};
+use super::ports::{EXIT, PortId, Reach};
 use super::prefer::Preference;
 use crate::geom::{Ground, wrap_angle};
 
@@ -142,5 +142,3 @@ fn place(p: &Placement) -> Place {
     let heading = wrap_angle(at.heading).to_degrees() / 20.0;
     (p.kind, x.round() as i32, z.round() as i32, heading.round() as i32, p.clock.div_euclid(5))
 }
-
-const _: () = assert!(ENTRY == 0 && EXIT == 1);
