@@ -48,7 +48,7 @@ pub(super) fn tile(
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
     let library = Library::new(set, scene.limits);
     let mut tiling = Patchwork::new(&library, domain);
-    let preference = prefer::by_size(set);
+    let preference = prefer::by_size(&library);
 
     anneal::anneal(&mut tiling, scene.characters, &preference, &mut clock, &mut rng);
     let mut search = search::Search::new(preference);

@@ -8,8 +8,9 @@ use glam::Vec2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
+use super::super::library::Library;
 use crate::motion::FPS;
-use crate::patch::{PatchKind, PatchSet};
+use crate::patch::PatchKind;
 
 /// The preference for each kind.
 pub(super) struct Preference {
@@ -17,9 +18,13 @@ pub(super) struct Preference {
     cumulative: Vec<f32>,
 }
 
-/// Larger patches are likelier.
-pub(super) fn by_size(set: &PatchSet) -> Preference {
-    let weights: Vec<f32> = set.kinds.iter().map(size).collect();
+/// Larger patches are likelier; those of several people that are not fit to be cast are never wanted.
+pub(super) fn by_size(library: &Library) -> Preference {
+    let weight = |(k, kind): (usize, &PatchKind)| {
+        let fit = kind.people() == 1 || library.multi.contains(&(k as u32));
+        if fit { size(kind) } else { 0.0 }
+    };
+    let weights: Vec<f32> = library.set.kinds.iter().enumerate().map(weight).collect();
     let mut sum = 0.0;
     let cumulative = weights.iter().map(|w| {
         sum += w;
@@ -41,6 +46,11 @@ impl Preference {
     pub fn draw(&self, rng: &mut ChaCha8Rng) -> u32 {
         let at = rng.random_range(0.0..*self.cumulative.last().expect("at least one kind"));
         self.cumulative.partition_point(|&c| c <= at).min(self.weights.len() - 1) as u32
+    }
+
+    /// True if the kind is wanted at all.
+    pub fn wants(&self, kind: u32) -> bool {
+        self.weights[kind as usize] > 0.0
     }
 
     /// A number by which candidates are sorted, small first: the order is that of drawing them one by one by F.

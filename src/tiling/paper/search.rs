@@ -80,7 +80,7 @@ impl Search {
                 EXIT => (port.at, port.tick, role.entry_group),
                 _ => (port.at.then(role.exit.inverse()), port.tick - role.ticks, role.exit_group),
             };
-            if group != port.group {
+            if group != port.group || !self.preference.wants(role.kind) {
                 continue;
             }
             let world_from_patch = entry.then(role.entry.inverse());
