@@ -16,4 +16,7 @@ pub mod samples;
 pub mod stage;
 pub mod tiling;
 
+#[cfg(test)]
+extern crate self as crowdquilt;
+
 pub use error::{Error, Result};

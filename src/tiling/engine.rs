@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::bake::bake;
+use super::bake::{Chains, bake};
 use super::bridge::Taste;
 use super::domain::Domain;
 use super::enrich::enrich;
@@ -144,8 +144,8 @@ fn engine(
         enrich_to(&mut tracks, share, taste, &mut clock, &mut rng);
     }
     let (bodies, left) = mend_all(&mut tracks, taste, &mut clock, &mut rng);
-    let status = status(&tracks, scene, left);
-    let crowd = bake(&tracks, scene, options.seed, bodies);
+    let status = status(tracks.chains(), scene, left);
+    let crowd = bake(tracks.chains(), scene, options.seed, bodies);
     Outcome { crowd, status, danglings: 0, interpenetrations: left, solve_secs: clock.secs() }
 }
 
@@ -213,8 +213,8 @@ fn mend_all(
 ) -> (Vec<crate::refine::Body>, usize) {
     let mut round = 0;
     loop {
-        let bodies = bodies(tracks);
-        let faults = faults(tracks, &bodies);
+        let bodies = bodies(tracks.chains());
+        let faults = faults(tracks.chains(), &bodies);
         round += 1;
         if faults.is_empty() || round > MEND_ROUNDS || !clock.goes_on(|| state(tracks, Phase::Mend)) {
             return (bodies, faults.len());
@@ -225,13 +225,19 @@ fn mend_all(
     }
 }
 
-fn status(tracks: &Tracks, scene: &Scene, faults: usize) -> Status {
-    let share = tracks.multi_person_share();
-    if faults > 0 {
-        Status::Imperfect(format!("{faults} interpenetrations are left"))
-    } else if tracks.tracks.len() < scene.characters {
-        Status::Short(format!("{} of {} characters found room", tracks.tracks.len(), scene.characters))
-    } else if share < scene.interaction && !tracks.library.multi.is_empty() {
+fn status(chains: Chains, scene: &Scene, faults: usize) -> Status {
+    match faults {
+        0 => wishes(chains, scene),
+        _ => Status::Imperfect(format!("{faults} interpenetrations are left")),
+    }
+}
+
+/// The status of a tiling without danglings and interpenetrations: which wish is unmet.
+pub(super) fn wishes(chains: Chains, scene: &Scene) -> Status {
+    let share = chains.multi_person_share();
+    if chains.lists.len() < scene.characters {
+        Status::Short(format!("{} of {} characters found room", chains.lists.len(), scene.characters))
+    } else if share < scene.interaction && !chains.library.multi.is_empty() {
         Status::Short(format!(
             "{share:.3} of {:.3} of the time is spent in patches of several people",
             scene.interaction

@@ -8,7 +8,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use super::bake::segments_of;
+use super::bake::{Chains, segments_of};
 use super::bridge::Taste;
 use super::tracks::{TrackId, Tracks, Undo, Window};
 use crate::geom::Capsule;
@@ -39,22 +39,23 @@ pub(super) struct Fault {
 }
 
 /// The final bodies of all people. In parallel over people.
-pub(super) fn bodies(tracks: &Tracks) -> Vec<Body> {
-    let last_frame = tracks.domain.horizon as u32 - 1;
-    (0..tracks.tracks.len())
+pub(super) fn bodies(chains: Chains) -> Vec<Body> {
+    let last_frame = chains.horizon as u32 - 1;
+    (0..chains.lists.len())
         .into_par_iter()
         .map(|t| {
-            let uses = segments_of(tracks, t);
-            let segments: Vec<_> = uses.iter().map(|(kind, placed)| Segment { kind, placed }).collect();
+            let uses = segments_of(chains, t);
+            let segments: Vec<_> =
+                uses.iter().map(|(kind, placed)| Segment { kind, placed }).collect();
             refine(&segments, last_frame)
         })
         .collect()
 }
 
 /// All faults of the final bodies, each at its first tick.
-pub(super) fn faults(tracks: &Tracks, bodies: &[Body]) -> Vec<Fault> {
+pub(super) fn faults(chains: Chains, bodies: &[Body]) -> Vec<Fault> {
     let per_tick: Vec<Vec<(TrackId, TrackId)>> =
-        (0..tracks.domain.horizon).into_par_iter().map(|tick| touching(tracks, bodies, tick)).collect();
+        (0..chains.horizon).into_par_iter().map(|tick| touching(chains, bodies, tick)).collect();
     let mut open: BTreeSet<(TrackId, TrackId)> = BTreeSet::new();
     let mut faults = Vec::new();
     for (tick, pairs) in per_tick.into_iter().enumerate() {
@@ -63,7 +64,7 @@ pub(super) fn faults(tracks: &Tracks, bodies: &[Body]) -> Vec<Fault> {
         open = now;
     }
     let alone = bodies.par_iter().enumerate().map(|(t, body)| {
-        let frame = body.strained.first().copied().into_iter().chain(first_rushed(body, &tracks.library.fastest)).min();
+        let frame = body.strained.first().copied().into_iter().chain(first_rushed(body, &chains.library.fastest)).min();
         frame.map(|f| Fault { a: t, b: t, tick: body.begin as i32 + f as i32 })
     });
     faults.extend(alone.collect::<Vec<_>>().into_iter().flatten());
@@ -79,7 +80,7 @@ fn first_rushed(body: &Body, fastest: &[f32; JOINT_COUNT]) -> Option<usize> {
 }
 
 /// Bodies of one tick, sorted along x so that near ones are neighbours.
-fn touching(tracks: &Tracks, bodies: &[Body], tick: i32) -> Vec<(TrackId, TrackId)> {
+fn touching(chains: Chains, bodies: &[Body], tick: i32) -> Vec<(TrackId, TrackId)> {
     let frame = |t: TrackId| usize::try_from(tick - bodies[t].begin as i32).ok().filter(|&f| f < bodies[t].root.len());
     let mut present: Vec<(Vec2, TrackId, usize)> = (0..bodies.len())
         .filter_map(|t| frame(t).map(|f| (Vec2::new(bodies[t].root[f].x, bodies[t].root[f].z), t, f)))
@@ -94,7 +95,7 @@ fn touching(tracks: &Tracks, bodies: &[Body], tick: i32) -> Vec<(TrackId, TrackI
                 break;
             }
             let ((_, a, fa), (_, b, fb)) = (present[i], present[j]);
-            if present[i].0.distance(present[j].0) > TOUCHING_HIPS || same_instance(tracks, a, b, tick) {
+            if present[i].0.distance(present[j].0) > TOUCHING_HIPS || same_instance(chains, a, b, tick) {
                 continue;
             }
             for (k, t, f) in [(i, a, fa), (j, b, fb)] {
@@ -111,8 +112,8 @@ fn touching(tracks: &Tracks, bodies: &[Body], tick: i32) -> Vec<(TrackId, TrackI
     pairs
 }
 
-fn same_instance(tracks: &Tracks, a: TrackId, b: TrackId, tick: i32) -> bool {
-    let instance = |t: TrackId| tracks.tracks[t].get(tracks.index_at(t, tick)).map(|&id| tracks.piece(id).instance);
+fn same_instance(chains: Chains, a: TrackId, b: TrackId, tick: i32) -> bool {
+    let instance = |t: TrackId| chains.piece_at(t, tick).map(|p| p.instance);
     instance(a) == instance(b)
 }
 

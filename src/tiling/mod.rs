@@ -16,6 +16,10 @@ mod scene;
 mod seed;
 mod tracks;
 
+#[cfg(test)]
+#[path = "../../tests/common/mod.rs"]
+mod common;
+
 pub use engine::tile;
 pub use outcome::{Method, Options, Outcome, Phase, Progress, Status};
 pub use scene::Scene;

@@ -172,6 +172,18 @@ impl Occupancy {
         self.free.push(id);
     }
 
+    /// Puts another piece in the place of a hidden one, which is answered.
+    pub fn replace(&mut self, id: PieceId, piece: Piece) -> Piece {
+        let before = self.pieces[id as usize].replace(piece).expect("a live piece");
+        self.show(id);
+        before
+    }
+
+    /// A placed piece, if there is one of this id.
+    pub fn get(&self, id: PieceId) -> Option<&Piece> {
+        self.pieces.get(id as usize)?.as_ref()
+    }
+
     /// Puts the bodies of a hidden piece back.
     pub fn show(&mut self, id: PieceId) {
         let piece = self.pieces[id as usize].take().expect("a live piece");
@@ -306,6 +318,20 @@ impl Occupancy {
             }
         }
     }
+}
+
+/// How deep the footprints of two pieces overlap at a tick, metres; `None` if either is not there, or they are apart.
+pub(super) fn depth(library: &Library, a: &Piece, b: &Piece, tick: i32) -> Option<f32> {
+    let body = |p: &Piece| {
+        let body = p.bodies.get(usize::try_from(tick - p.first_tick()).ok()?)?;
+        Some((body.position, body.reach, world_discs(body, &library.roles[p.role as usize].footprints[body.frame as usize])))
+    };
+    let ((at, reach, own), (other_at, other_reach, others)) = (body(a)?, body(b)?);
+    if at.distance(other_at) >= reach + other_reach {
+        return None;
+    }
+    let pairs = own.iter().flat_map(|p| others.iter().map(move |q| p.z + q.z - p.truncate().distance(q.truncate())));
+    pairs.reduce(f32::max).filter(|&d| d > 0.0)
 }
 
 fn world_discs(body: &Body, footprint: &Footprint) -> Footprint {

@@ -1,17 +1,97 @@
-//! Algorithms 1 and 2 of "Tiling Motion Patches".
+//! The published baseline: Algorithms 1 and 2 of "Tiling Motion Patches" (Hyun, Kim, Hwang, Lee 2013), section 5.
+//!
+//! `anneal` is Algorithm 1 and equation 6, `search` Algorithm 2, `prefer` equation 7. What the two algorithms call
+//! "add, stitch, deform, IsValid, NoCollision" is in `patchwork`, the table of danglings in `ports`, deformation of
+//! one role in `shape`.
+//!
+//! Departures, none of which changes what is searched: adjacent patches deform by closed-form strands in place of one
+//! joint linear system (the stitched port is the midpoint of the two, which is where the joint system of two equal
+//! strings would put it); a patch of several people keeps its interaction rigid and bends its legs only; it also keeps
+//! its time, while patches of one person are rescaled to whole ticks. Where final bodies interpenetrate after all, one
+//! of the two patches is removed and Algorithm 2 runs again.
 
+mod anneal;
+mod patchwork;
+mod ports;
+mod prefer;
+mod search;
+mod shape;
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use self::patchwork::Patchwork;
 use super::Scene;
+use super::bake::{Chains, bake};
 use super::domain::Domain;
-use super::outcome::{Options, Outcome, Progress};
+use super::engine::{Clock, wishes};
+use super::library::Library;
+use super::mend::{bodies, faults};
+use super::outcome::{Options, Outcome, Phase, Progress, Status};
 use crate::patch::PatchSet;
+use crate::refine::Body;
 
-/// Equation 6: the tiling energy of `connected` and `dangling` ports, alpha = 0.2.
-pub(super) fn energy(connected: usize, dangling: usize) -> f32 {
-    const ALPHA: f32 = 0.2;
-    let all = (connected + dangling).max(1) as f32;
-    dangling as f32 / all + ALPHA / all
+pub(super) use anneal::energy;
+
+/// Rounds of removing patches whose final bodies interpenetrate.
+const MEND_ROUNDS: usize = 30;
+
+/// Tiles as published. O(samples + danglings x candidates x jitters), each with a few frames' work.
+pub(super) fn tile(
+    scene: &Scene,
+    set: &PatchSet,
+    domain: &Domain,
+    options: &Options,
+    progress: &mut dyn FnMut(&Progress) -> bool,
+) -> Outcome {
+    let mut clock = Clock::new(options.time_secs, progress);
+    let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
+    let library = Library::new(set, scene.limits);
+    let mut tiling = Patchwork::new(&library, domain);
+    let preference = prefer::by_size(&library);
+
+    anneal::anneal(&mut tiling, scene.characters, &preference, &mut clock, &mut rng);
+    let mut search = search::Search::new(preference);
+    search.close(&mut tiling, &mut clock, &mut rng);
+    let (chains, bodies, left) = mend(&mut tiling, &mut search, &mut clock, &mut rng);
+
+    let danglings = tiling.dangling();
+    let chains = tiling.chains(&chains);
+    let status = status(danglings, left, chains, scene);
+    let crowd = bake(chains, scene, options.seed, bodies);
+    Outcome { crowd, status, danglings, interpenetrations: left, solve_secs: clock.secs() }
 }
 
-pub(super) fn tile(_: &Scene, _: &PatchSet, _: &Domain, _: &Options, _: &mut dyn FnMut(&Progress) -> bool) -> Outcome {
-    todo!()
+/// Tests the final bodies; where two interpenetrate, removes a patch and closes the gap anew.
+fn mend(
+    tiling: &mut Patchwork,
+    search: &mut search::Search,
+    clock: &mut Clock,
+    rng: &mut ChaCha8Rng,
+) -> (Vec<Vec<u32>>, Vec<Body>, usize) {
+    let mut round = 0;
+    loop {
+        let lists = tiling.characters();
+        let chains = tiling.chains(&lists);
+        let bodies = bodies(chains);
+        let faults = faults(chains, &bodies);
+        round += 1;
+        if faults.is_empty() || round > MEND_ROUNDS || !clock.goes_on(|| tiling.state(Phase::Mend)) {
+            return (lists, bodies, faults.len());
+        }
+        let mut culprits: Vec<u32> = faults.iter().map(|f| chains.smaller_instance(f.a, f.b, f.tick)).collect();
+        culprits.sort_unstable();
+        culprits.dedup();
+        culprits.into_iter().for_each(|instance| search.discard(tiling, instance));
+        search.close(tiling, clock, rng);
+    }
+}
+
+fn status(danglings: usize, faults: usize, chains: Chains, scene: &Scene) -> Status {
+    match (danglings, faults) {
+        (0, 0) => wishes(chains, scene),
+        (0, _) => Status::Imperfect(format!("{faults} interpenetrations are left")),
+        (_, 0) => Status::Imperfect(format!("{danglings} entries and exits are left dangling")),
+        _ => Status::Imperfect(format!("{danglings} danglings and {faults} interpenetrations are left")),
+    }
 }

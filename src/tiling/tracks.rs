@@ -3,6 +3,7 @@
 
 use rand_chacha::ChaCha8Rng;
 
+use super::bake::Chains;
 use super::bridge::{Bridge, Goal, NO_INSTANCE, Port, Taste, View};
 use super::domain::Domain;
 use super::library::Library;
@@ -227,15 +228,15 @@ impl<'a> Tracks<'a> {
         self.piece(self.tracks[track][self.index_at(track, tick)]).state(tick)
     }
 
+    /// The people as baking wants them.
+    pub fn chains(&self) -> Chains<'_> {
+        let Self { library, domain, occupancy, tracks, .. } = self;
+        Chains { library, horizon: domain.horizon, occupancy, lists: tracks }
+    }
+
     /// Share of the people's time inside patches of two or more.
     pub fn multi_person_share(&self) -> f32 {
-        let (mut multi, mut all) = (0, 0);
-        for &id in self.tracks.iter().flatten() {
-            let ticks = self.piece(id).ticks_inside();
-            all += ticks;
-            multi += if self.people_of(id) > 1 { ticks } else { 0 };
-        }
-        multi as f32 / all.max(1) as f32
+        self.chains().multi_person_share()
     }
 
     /// Number of instances.
