@@ -1,13 +1,13 @@
 from collections.abc import Callable
 from os import PathLike
-from typing import Any, Literal, final
+from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
 
-type Floats = NDArray[np.float32]
-type Indices = NDArray[np.uint32]
-type AnyPath = str | PathLike[str]
+Floats: TypeAlias = NDArray[np.float32]
+Indices: TypeAlias = NDArray[np.uint32]
+AnyPath: TypeAlias = str | PathLike[str]
 
 __version__: str
 

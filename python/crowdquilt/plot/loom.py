@@ -7,6 +7,7 @@ matplotlib's own 3D axes do not sort the parts of different lines and surfaces.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -126,13 +127,13 @@ def volumes(painter: Painter, crowd: Crowd, who: Lives, colours: list[style.Colo
             continue
         begin, end = min(s.begin for s in stretches), max(s.end for s in stretches)
         frames = np.unique(np.append(np.arange(begin, end, STEP), end))
-        slices = []
+        slices: list[np.ndarray] = []
         for frame in frames:
             here = np.array([s.at(frame) for s in stretches if s.begin <= frame <= s.end])
             ground = style.swept(here, VOLUME_RADIUS, 24) if len(here) else slices[-1][:, [0, 2]]
             slices.append(lift(ground, np.full(len(ground), frame), crowd.fps, rise))
         colour = colours[kind]
-        for lower, upper in zip(slices, slices[1:], strict=False):
+        for lower, upper in pairwise(slices):
             loft(painter, lower, upper, colour, light)
         painter.face(slices[-1], (*style.mix(colour, "white", 0.35), 0.85))
 
@@ -198,7 +199,9 @@ def frame_back(axes: Axes, crowd: Crowd, camera: Camera, rise: float) -> None:
 
     floor = np.insert(crowd.region, 1, 0.0, axis=1)
     axes.add_collection(
-        PolyCollection([camera.project(floor)[0]], facecolors=style.FLOOR, edgecolors=style.INK, linewidths=1.3, zorder=1)
+        PolyCollection(
+            [camera.project(floor)[0]], facecolors=style.FLOOR, edgecolors=style.INK, linewidths=1.3, zorder=1
+        )
     )
     lines = [flat((x, 0, low[1]), (x, 0, high[1])) for x in np.arange(np.ceil(low[0]), high[0])]
     lines += [flat((low[0], 0, z), (high[0], 0, z)) for z in np.arange(np.ceil(low[1]), high[1])]
@@ -222,7 +225,14 @@ def frame_back(axes: Axes, crowd: Crowd, camera: Camera, rise: float) -> None:
         at = flat((near_x, rise * secs, low[1]))[0]
         text = f"{secs:g} s" if secs in (ticks[0], ticks[-1]) else f"{secs:g}"
         axes.annotate(
-            text, at, xytext=(-8, 0), textcoords="offset points", size=9.5, color=style.INK, ha="right", va="center"
+            text,
+            at,
+            xytext=(-8, 0),
+            textcoords="offset points",
+            size=9.5,
+            color=style.INK,
+            ha="right",
+            va="center",
         )
 
 
@@ -260,6 +270,9 @@ def captions(sheet: Figure, crowd: Crowd, palette: dict[str, style.Colour]) -> N
         f"time runs upwards, {crowd.seconds:.0f} s"
     )
     style.heading(sheet, f"{style.metres(crowd)} in space and time", subtitle)
-    counts = {name: sum(1 for k in crowd.instances if kinds[k].people > 1 and style.activity(kinds[k]) == name) for name in palette}
+    counts = {
+        name: sum(1 for k in crowd.instances if kinds[k].people > 1 and style.activity(kinds[k]) == name)
+        for name in palette
+    }
     entries = [(f"{name} {counts[name]}", colour) for name, colour in palette.items()]
     style.legend(sheet, [*entries, ("alone", style.ALONE)])

@@ -64,9 +64,7 @@ def ground(axes: Axes, crowd: Crowd) -> None:
     axes.add_patch(Polygon(crowd.region, closed=True, fill=False, edgecolor=style.INK, linewidth=2.2, zorder=9))
     for obstacle in crowd.obstacles:
         solid = Polygon(obstacle, closed=True, facecolor="#d7d3c8", edgecolor=style.INK, linewidth=1.4, zorder=2)
-        hatch = Polygon(
-            obstacle, closed=True, fill=False, edgecolor="#b3aea0", linewidth=0, hatch="////", zorder=2.1
-        )
+        hatch = Polygon(obstacle, closed=True, fill=False, edgecolor="#b3aea0", linewidth=0, hatch="////", zorder=2.1)
         axes.add_patch(solid)
         axes.add_patch(hatch)
 
@@ -91,9 +89,7 @@ def hulls(axes: Axes, crowd: Crowd, who: Lives, secs: float, kind_colours: list[
         axes.add_patch(hull)
 
 
-def person_colours(
-    crowd: Crowd, who: Lives, secs: float, kind_colours: list[style.Colour]
-) -> dict[int, style.Colour]:
+def person_colours(crowd: Crowd, who: Lives, secs: float, kind_colours: list[style.Colour]) -> dict[int, style.Colour]:
     """Everybody's colour at one moment: that of the patch they are in."""
     found = {}
     for person in range(len(crowd)):
