@@ -7,7 +7,7 @@ The modules are the stages of the pipeline, named like those of the Rust core::
 Metres, seconds, radians; right-handed, y up, the ground is the xz plane. Motion runs at 30 frames per second.
 """
 
-from crowdquilt import check, export, motion, patch, plot, samples, stage, tiling
+from crowdquilt import check, export, motion, patch, samples, stage, tiling
 from crowdquilt._core import (
     Clip,
     Crowd,
@@ -40,7 +40,6 @@ __all__ = [
     "export",
     "motion",
     "patch",
-    "plot",
     "samples",
     "stage",
     "tiling",

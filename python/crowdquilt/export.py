@@ -9,7 +9,7 @@ from crowdquilt._core import export_bvh as bvh
 from crowdquilt._core import export_glb as glb
 from crowdquilt.outputs import whole_file, whole_folder
 
-__all__ = ["bvh", "glb", "save_bvh", "save_glb"]
+__all__ = ["bvh", "glb", "save_bvh", "save_glb", "save_person"]
 
 
 def save_glb(crowd: Crowd, path: Path) -> Path:
@@ -19,10 +19,17 @@ def save_glb(crowd: Crowd, path: Path) -> Path:
     return path
 
 
+def save_person(crowd: Crowd, person: int, path: Path) -> Path:
+    """Write one person's motion as a BVH file."""
+    with whole_file(path) as part:
+        part.write_text(bvh(crowd, person), encoding="ascii", newline="\n")
+    return path
+
+
 def save_bvh(crowd: Crowd, folder: Path) -> list[Path]:
     """Write `person_000.bvh`, `person_001.bvh`, ... into `folder`; those of an earlier, larger crowd go away."""
     names = [f"person_{person:03}.bvh" for person in range(len(crowd))]
     with whole_folder(folder, stale="person_*.bvh") as part:
         for person, name in enumerate(names):
-            (part / name).write_text(bvh(crowd, person), encoding="ascii", newline="\n")
+            save_person(crowd, person, part / name)
     return [folder / name for name in names]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -17,14 +16,14 @@ def whole_file(path: Path) -> Iterator[Path]:
     part = path.with_name(f".{path.stem}.part{path.suffix}")
     try:
         yield part
-        os.replace(part, path)
+        part.replace(path)
     finally:
         part.unlink(missing_ok=True)
 
 
 @contextmanager
 def whole_folder(folder: Path, stale: str | None = None) -> Iterator[Path]:
-    """Yield an empty folder to write to; on success its files move into `folder`, whose other files stay.
+    """Yield an empty folder to write to; on success its entries move into `folder`, whose other entries stay.
 
     Files of `folder` that match the pattern `stale` and were not written again are removed: they were made by
     an earlier run and would pass for this one's.
@@ -36,7 +35,10 @@ def whole_folder(folder: Path, stale: str | None = None) -> Iterator[Path]:
         folder.mkdir(exist_ok=True)
         written = {file.name for file in part.iterdir()}
         for name in sorted(written):
-            os.replace(part / name, folder / name)
+            if (folder / name).is_dir():
+                # A folder cannot be replaced: the old one moves out of the way and goes with the temporary folder.
+                (folder / name).replace(part / f"{name}.old")
+            (part / name).replace(folder / name)
         for file in folder.glob(stale) if stale else ():
             if file.name not in written:
                 file.unlink()

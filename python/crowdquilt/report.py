@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from crowdquilt import check
-from crowdquilt._core import Crowd, Report
+from crowdquilt._core import Crowd, Outcome, Report
 from crowdquilt.outputs import whole_file
 
 
-def build(crowd: Crowd, report: Report, solve_secs: float | None = None) -> dict[str, Any]:
-    """Everything `report.json` says about `crowd`; `solve_secs` is None where nobody timed the solve."""
+def build(crowd: Crowd, report: Report, outcome: Outcome | None = None) -> dict[str, Any]:
+    """Everything `report.json` says about `crowd`; without the `outcome` of its solve, its time and end are None."""
     summary = check.summary(crowd)
     return {
         "characters": summary.characters,
@@ -20,7 +20,9 @@ def build(crowd: Crowd, report: Report, solve_secs: float | None = None) -> dict
         "kinds": summary.kinds,
         "multi_person_share": round(summary.multi_person_share, 4),
         "danglings": summary.danglings,
-        "solve_secs": None if solve_secs is None else round(solve_secs, 3),
+        "solve_secs": round(outcome.solve_secs, 3) if outcome else None,
+        "status": outcome.status if outcome else None,
+        "reason": outcome.reason if outcome else None,
         "seed": crowd.seed,
         "seconds": round(crowd.seconds, 4),
         "ok": report.ok,

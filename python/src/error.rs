@@ -33,11 +33,12 @@ pub fn to_python(error: Error) -> PyErr {
 pub fn run<T: Send>(py: Python<'_>, work: impl FnOnce() -> crowdquilt::Result<T> + Send) -> PyResult<T> {
     match py.detach(|| catch_unwind(AssertUnwindSafe(work))) {
         Ok(result) => result.map_err(to_python),
-        Err(panic) => Err(internal(&panic)),
+        Err(panic) => Err(internal(&*panic)),
     }
 }
 
-fn internal(panic: &(dyn std::any::Any + Send)) -> PyErr {
+/// The exception for a panic: a defect of ours.
+pub fn internal(panic: &(dyn std::any::Any + Send)) -> PyErr {
     let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
     CrowdquiltError::new_err(format!("internal error, please report it: {}", text.unwrap_or("no message")))
 }

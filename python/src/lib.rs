@@ -5,17 +5,36 @@
 
 use pyo3::prelude::*;
 
+mod check;
 mod error;
+mod export;
+mod motion;
 mod numbers;
 mod patch;
+mod samples;
 mod stage;
+mod tiling;
 
 #[pymodule]
 mod _core {
     #[pymodule_export]
+    use super::check::{Report, Row, Summary, check_crowd, summary};
+    #[pymodule_export]
     use super::error::CrowdquiltError;
     #[pymodule_export]
-    use super::patch::{Kind, PatchSet, Role};
+    use super::export::{export_bvh, export_glb};
+    #[pymodule_export]
+    use super::motion::{Clip, load_clip};
+    #[pymodule_export]
+    use super::patch::{Kind, PatchSet, Role, cut_patches};
+    #[pymodule_export]
+    use super::samples::write_samples;
     #[pymodule_export]
     use super::stage::{Crowd, Fragment};
+    #[pymodule_export]
+    use super::tiling::{Outcome, Progress, Scene, tile};
+
+    #[pymodule_export]
+    #[allow(non_upper_case_globals)]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
 }

@@ -1,5 +1,6 @@
 //! Glue of `crowdquilt::stage`.
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -21,38 +22,44 @@ pub struct Fragment(core::FragmentUse);
 
 #[pymethods]
 impl Fragment {
+    /// Index of the instance.
     #[getter]
     fn instance(&self) -> u32 {
         self.0.instance
     }
 
+    /// Index of the role it plays in the instance's kind.
     #[getter]
     fn role(&self) -> u32 {
         self.0.role
     }
 
+    /// Frame of the entry; negative where the crowd's first frame crops it.
     #[getter]
     fn begin(&self) -> i32 {
         self.0.begin
     }
 
+    /// Frame of the exit; the next fragment begins here.
     #[getter]
     fn end(&self) -> i32 {
         self.0.end
     }
 
+    /// (samples, 2): the deformed path's ground points x, z, one for each source frame, metres.
     #[getter]
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         points2(py, &self.0.points)
     }
 
+    /// (samples,): the deformed path's headings, radians, not wrapped.
     #[getter]
     fn headings<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         PyArray1::from_slice(py, &self.0.headings)
     }
 }
 
-/// A finished crowd.
+/// A finished crowd: baked, playable at any time. Metres, seconds, y up; `len(crowd)` is the number of people.
 #[pyclass(frozen, module = "crowdquilt")]
 pub struct Crowd(pub Arc<core::Crowd>);
 
@@ -80,86 +87,104 @@ type People<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray3<f32>>);
 
 #[pymethods]
 impl Crowd {
+    /// Read a crowd file (`*.crowd`).
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         run(py, || core::Crowd::load(&path)).map(|crowd| Self(Arc::new(crowd)))
     }
 
+    /// A crowd from the bytes of a crowd file.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Self> {
         run(py, || core::Crowd::from_bytes(data)).map(|crowd| Self(Arc::new(crowd)))
     }
 
+    /// Write a crowd file, whole or not at all.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         run(py, || self.0.save(&path))
     }
 
-    fn to_bytes(&self) -> Vec<u8> {
-        self.0.to_bytes()
+    /// The bytes of a crowd file.
+    fn to_bytes(&self) -> Cow<'static, [u8]> {
+        Cow::Owned(self.0.to_bytes())
     }
 
+    /// Seed it was made with.
     #[getter]
     fn seed(&self) -> u64 {
         self.0.seed
     }
 
+    /// Frames per second.
     #[getter]
     fn fps(&self) -> f32 {
         FPS
     }
 
+    /// Number of frames the crowd lives.
     #[getter]
     fn frames(&self) -> u32 {
         self.0.domain.last_frame + 1
     }
 
+    /// Seconds the crowd lives.
     #[getter]
     fn seconds(&self) -> f32 {
         self.0.domain.last_frame as f32 / FPS
     }
 
+    /// (corners, 2): where everybody stays inside, as x, z in metres.
     #[getter]
     fn region<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         points2(py, &self.0.domain.region.points)
     }
 
+    /// One (corners, 2) array for each obstacle.
     #[getter]
     fn obstacles<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f32>>>> {
         self.0.domain.obstacles.iter().map(|o| points2(py, &o.points)).collect()
     }
 
+    /// Names of the canonical skeleton's joints.
     #[getter]
     fn joints(&self) -> Vec<String> {
         canonical().joints.iter().map(|j| j.name.clone()).collect()
     }
 
+    /// Index of every joint's parent; -1 for the root.
     #[getter]
     fn parents(&self) -> Vec<i32> {
         canonical().joints.iter().map(|j| j.parent.map_or(-1, |p| p as i32)).collect()
     }
 
+    /// The patch kinds it is tiled with.
     #[getter]
     fn kinds(&self, py: Python<'_>) -> PyResult<Vec<Kind>> {
         kinds(py, &self.0.set)
     }
 
+    /// (instances,): the kind of every placed patch.
     #[getter]
     fn instances<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_iter(py, self.0.instances.iter().map(|i| i.kind))
     }
 
+    /// First and last frame of a person.
     fn span(&self, person: usize) -> PyResult<(u32, u32)> {
         self.person(person).map(|c| (c.begin, c.end()))
     }
 
+    /// (frames, 3): a person's hips from their first frame to their last, metres.
     fn roots<'py>(&self, py: Python<'py>, person: usize) -> PyResult<Bound<'py, PyArray2<f32>>> {
         points3(py, &self.person(person)?.root)
     }
 
+    /// (frames, joints, 4): a person's rotations as x, y, z, w; the hips' global, all others local.
     fn rotations<'py>(&self, py: Python<'py>, person: usize) -> PyResult<Bound<'py, PyArray3<f32>>> {
         rotations(py, &self.person(person)?.rotations, JOINT_COUNT)
     }
 
+    /// (joints, 3): a person's joints in the world at a frame of the crowd, metres. IndexError while they are absent.
     fn positions<'py>(&self, py: Python<'py>, person: usize, frame: u32) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let character = self.person(person)?;
         if !character.present(frame) {
@@ -172,10 +197,12 @@ impl Crowd {
         points3(py, &globals.iter().map(|(position, _)| *position).collect::<Vec<_>>())
     }
 
+    /// The patches a person goes through, in order.
     fn fragments(&self, person: usize) -> PyResult<Vec<Fragment>> {
         Ok(self.person(person)?.fragments.iter().cloned().map(Fragment).collect())
     }
 
+    /// Everybody there at a time: (n,) indices and (n, joints, 3) joints in the world, metres.
     fn at<'py>(&self, py: Python<'py>, secs: f32) -> PyResult<People<'py>> {
         let (mut people, mut values) = (Vec::new(), Vec::new());
         self.bodies(secs, |index, globals| {
@@ -185,6 +212,7 @@ impl Crowd {
         Ok((PyArray1::from_vec(py, people), stack(py, values, JOINT_COUNT, 3)?))
     }
 
+    /// Everybody there at a time: (n,) indices and (n, capsules, 7) body capsules as ax, ay, az, bx, by, bz, radius.
     fn capsules<'py>(&self, py: Python<'py>, secs: f32) -> PyResult<People<'py>> {
         let (mut people, mut values, mut capsules) = (Vec::new(), Vec::new(), Vec::new());
         self.bodies(secs, |index, globals| {

@@ -129,8 +129,14 @@ class Use:
     headings: np.ndarray
 
 
-def crowd(kinds: list[Kind], instances: list[int], people: list[list[Use]], last_frame: int = 600,
-          side: float = 12.0, obstacles: list[list[tuple[float, float]]] | None = None) -> bytes:
+def crowd(
+    kinds: list[Kind],
+    instances: list[int],
+    people: list[list[Use]],
+    last_frame: int = 600,
+    side: float = 12.0,
+    obstacles: list[list[tuple[float, float]]] | None = None,
+) -> bytes:
     """A crowd file; everybody glides along the placed fragments in a standing pose."""
     set_header, arrays = set_parts(kinds, "set_")
     roots, rotations, points, headings, characters = [], [], [], [], []
@@ -148,8 +154,13 @@ def crowd(kinds: list[Kind], instances: list[int], people: list[list[Use]], last
         points += [u.points for u in uses]
         headings += [u.headings for u in uses]
         fragments = [
-            {"instance": u.instance, "role": u.role, "begin": u.begin, "end": u.begin + len(u.points) - 1,
-             "samples": len(u.points)}
+            {
+                "instance": u.instance,
+                "role": u.role,
+                "begin": u.begin,
+                "end": u.begin + len(u.points) - 1,
+                "samples": len(u.points),
+            }
             for u in uses
         ]
         characters.append({"begin": begin, "frames": len(path), "fragments": fragments})

@@ -7,6 +7,7 @@ matplotlib's own 3D axes do not sort the parts of different lines and surfaces.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,9 @@ from crowdquilt.plot.lives import Lives, lives
 
 STEP = 4  # frames from one slice of a volume, one bead of a thread, to the next
 VOLUME_RADIUS = 0.28
+THREAD = 0.0036  # scene widths
+
+Rgba = tuple[float, float, float, float]
 
 
 @dataclass
@@ -45,46 +49,35 @@ class Camera:
 
 @dataclass
 class Painter:
-    """Collects polygons and lines with their depths, then paints them from back to front."""
+    """Collects polygons with their depths, then paints them from back to front.
+
+    Lines become thin polygons too: one collection of one sort is painted in one go and in its own order.
+    """
 
     camera: Camera
-    shapes: list[tuple[float, np.ndarray, tuple[float, ...], tuple[float, ...], float]] = field(default_factory=list)
+    shapes: list[tuple[float, np.ndarray, Rgba]] = field(default_factory=list)
 
-    def face(self, corners: np.ndarray, fill: tuple[float, ...], edge: tuple[float, ...] = (0, 0, 0, 0)) -> None:
+    def face(self, corners: np.ndarray, fill: Rgba) -> None:
         """A polygon."""
         flat, depth = self.camera.project(corners)
-        self.shapes.append((float(depth.mean()), flat, fill, edge, 0.35))
+        self.shapes.append((float(depth.mean()), flat, fill))
 
-    def line(self, points: np.ndarray, colour: tuple[float, ...], width: float, nearer: float = 0.0) -> None:
-        """A polyline of `width` points where the camera looks at."""
+    def line(self, points: np.ndarray, colour: Rgba, width: float, nearer: float = 0.0) -> None:
+        """A polyline, `width` scene widths thick where the camera looks at."""
         flat, depth = self.camera.project(points)
-        middle = float(depth.mean())
-        scaled = width * self.camera.reach / (self.camera.reach - middle)
-        self.shapes.append((middle + nearer, flat, (0, 0, 0, 0), colour, scaled))
+        half = 0.5 * width * self.camera.reach / (self.camera.reach - depth)
+        along = np.gradient(flat, axis=0)
+        length = np.maximum(np.linalg.norm(along, axis=1), 1e-9)
+        across = np.stack([-along[:, 1], along[:, 0]], axis=1) * (half / length)[:, None]
+        outline = np.concatenate([flat + across, (flat - across)[::-1]])
+        self.shapes.append((float(depth.mean()) + nearer, outline, colour))
 
     def paint(self, axes: Axes) -> None:
         """Put everything on the sheet."""
         self.shapes.sort(key=lambda shape: shape[0])
-        run: list[tuple[float, np.ndarray, tuple[float, ...], tuple[float, ...], float]] = []
-        for shape in self.shapes:
-            if run and (shape[2][3] > 0) != (run[0][2][3] > 0):
-                self._flush(axes, run)
-                run = []
-            run.append(shape)
-        self._flush(axes, run)
-
-    @staticmethod
-    def _flush(axes: Axes, run: list[tuple[float, np.ndarray, tuple[float, ...], tuple[float, ...], float]]) -> None:
-        """One collection for a run of polygons or of lines, above all before."""
-        if not run:
-            return
-        places, fills, edges, widths = ([shape[i] for shape in run] for i in (1, 2, 3, 4))
-        order = 10 + len(axes.collections) * 1e-3
-        if fills[0][3] > 0:
-            made = PolyCollection(places, facecolors=fills, edgecolors=edges, linewidths=widths, zorder=order)
-        else:
-            made = LineCollection(places, colors=edges, linewidths=widths, capstyle="butt", zorder=order)
-        axes.add_collection(made, autolim=False)
+        outlines, fills = [shape[1] for shape in self.shapes], [shape[2] for shape in self.shapes]
+        # A hair of the same colour around each polygon closes the seams between neighbours.
+        axes.add_collection(PolyCollection(outlines, facecolors=fills, edgecolors=fills, linewidths=0.2, zorder=10))
 
 
 def loom(crowd: Crowd, path: str | Path | None = None, dpi: int = 160) -> Figure:
@@ -134,15 +127,15 @@ def volumes(painter: Painter, crowd: Crowd, who: Lives, colours: list[style.Colo
             continue
         begin, end = min(s.begin for s in stretches), max(s.end for s in stretches)
         frames = np.unique(np.append(np.arange(begin, end, STEP), end))
-        slices = []
+        slices: list[np.ndarray] = []
         for frame in frames:
             here = np.array([s.at(frame) for s in stretches if s.begin <= frame <= s.end])
             ground = style.swept(here, VOLUME_RADIUS, 24) if len(here) else slices[-1][:, [0, 2]]
             slices.append(lift(ground, np.full(len(ground), frame), crowd.fps, rise))
         colour = colours[kind]
-        for lower, upper in zip(slices, slices[1:], strict=False):
+        for lower, upper in pairwise(slices):
             loft(painter, lower, upper, colour, light)
-        painter.face(slices[-1], (*style.mix(colour, "white", 0.35), 0.85), (*style.mix(colour, "white", 0.6), 0.9))
+        painter.face(slices[-1], (*style.mix(colour, "white", 0.35), 0.85))
 
 
 def loft(painter: Painter, lower: np.ndarray, upper: np.ndarray, colour: style.Colour, light: np.ndarray) -> None:
@@ -159,7 +152,7 @@ def loft(painter: Painter, lower: np.ndarray, upper: np.ndarray, colour: style.C
         length = float(np.linalg.norm(normal))
         lit = float(normal @ light) / length if length > 0 else 0.0
         shade = style.mix(colour, "white", 0.38 * lit) if lit > 0 else style.mix(colour, style.INK, -0.45 * lit)
-        painter.face(quad, (*shade, 0.80), (*shade, 0.80))
+        painter.face(quad, (*shade, 0.80))
 
 
 def threads(painter: Painter, crowd: Crowd, who: Lives, colours: list[style.Colour], rise: float) -> None:
@@ -179,8 +172,8 @@ def threads(painter: Painter, crowd: Crowd, who: Lives, colours: list[style.Colo
             points = lift(s.ground, frames, crowd.fps, rise)
             for i in range(0, len(points) - 1, STEP):
                 bead = points[i : i + STEP + 1]
-                painter.line(bead, (1, 1, 1, 0.85), 3.4)
-                painter.line(bead, (*colour, 1.0), 2.0 if company else 1.5, nearer=1e-4)
+                painter.line(bead, (1.0, 1.0, 1.0, 0.85), 2.2 * THREAD)
+                painter.line(bead, (*colour, 1.0), THREAD, nearer=1e-4)
 
 
 def obstacles(painter: Painter, crowd: Crowd, rise: float) -> None:
@@ -193,7 +186,7 @@ def obstacles(painter: Painter, crowd: Crowd, rise: float) -> None:
                 quad = np.array([[a[0], low, a[1]], [b[0], low, b[1]], [b[0], high, b[1]], [a[0], high, a[1]]])
                 painter.face(quad, (0.74, 0.72, 0.67, 0.22))
         floor = np.insert(obstacle, 1, 0.0, axis=1)
-        painter.face(floor, (0.74, 0.72, 0.67, 0.9), (0.3, 0.3, 0.3, 0.6))
+        painter.face(floor, (0.74, 0.72, 0.67, 0.9))
 
 
 def frame_back(axes: Axes, crowd: Crowd, camera: Camera, rise: float) -> None:
@@ -206,7 +199,9 @@ def frame_back(axes: Axes, crowd: Crowd, camera: Camera, rise: float) -> None:
 
     floor = np.insert(crowd.region, 1, 0.0, axis=1)
     axes.add_collection(
-        PolyCollection([camera.project(floor)[0]], facecolors=style.FLOOR, edgecolors=style.INK, linewidths=1.3, zorder=1)
+        PolyCollection(
+            [camera.project(floor)[0]], facecolors=style.FLOOR, edgecolors=style.INK, linewidths=1.3, zorder=1
+        )
     )
     lines = [flat((x, 0, low[1]), (x, 0, high[1])) for x in np.arange(np.ceil(low[0]), high[0])]
     lines += [flat((low[0], 0, z), (high[0], 0, z)) for z in np.arange(np.ceil(low[1]), high[1])]
@@ -230,7 +225,14 @@ def frame_back(axes: Axes, crowd: Crowd, camera: Camera, rise: float) -> None:
         at = flat((near_x, rise * secs, low[1]))[0]
         text = f"{secs:g} s" if secs in (ticks[0], ticks[-1]) else f"{secs:g}"
         axes.annotate(
-            text, at, xytext=(-8, 0), textcoords="offset points", size=9.5, color=style.INK, ha="right", va="center"
+            text,
+            at,
+            xytext=(-8, 0),
+            textcoords="offset points",
+            size=9.5,
+            color=style.INK,
+            ha="right",
+            va="center",
         )
 
 
@@ -268,6 +270,9 @@ def captions(sheet: Figure, crowd: Crowd, palette: dict[str, style.Colour]) -> N
         f"time runs upwards, {crowd.seconds:.0f} s"
     )
     style.heading(sheet, f"{style.metres(crowd)} in space and time", subtitle)
-    counts = {name: sum(1 for k in crowd.instances if kinds[k].people > 1 and style.activity(kinds[k]) == name) for name in palette}
+    counts = {
+        name: sum(1 for k in crowd.instances if kinds[k].people > 1 and style.activity(kinds[k]) == name)
+        for name in palette
+    }
     entries = [(f"{name} {counts[name]}", colour) for name, colour in palette.items()]
     style.legend(sheet, [*entries, ("alone", style.ALONE)])

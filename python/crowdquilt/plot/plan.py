@@ -35,7 +35,7 @@ def plan(crowd: Crowd, path: str | Path | None = None, time: float | None = None
     sheet = style.new_figure(inches + 1.0, inches * depth / width + 2.2)
     wide, tall = sheet.get_size_inches()
     axes = sheet.add_axes((0.5 / wide, 1.15 / tall, inches / wide, inches * depth / width / tall))
-    margin = 0.012 * max(width, depth)
+    margin = 0.002 * max(width, depth)  # half the wall's line
     axes.set(xlim=(low[0] - margin, high[0] + margin), ylim=(high[1] + margin, low[1] - margin), aspect="equal")
     axes.axis("off")
     ground(axes, crowd)
@@ -64,9 +64,7 @@ def ground(axes: Axes, crowd: Crowd) -> None:
     axes.add_patch(Polygon(crowd.region, closed=True, fill=False, edgecolor=style.INK, linewidth=2.2, zorder=9))
     for obstacle in crowd.obstacles:
         solid = Polygon(obstacle, closed=True, facecolor="#d7d3c8", edgecolor=style.INK, linewidth=1.4, zorder=2)
-        hatch = Polygon(
-            obstacle, closed=True, fill=False, edgecolor="#b3aea0", linewidth=0, hatch="////", zorder=2.1
-        )
+        hatch = Polygon(obstacle, closed=True, fill=False, edgecolor="#b3aea0", linewidth=0, hatch="////", zorder=2.1)
         axes.add_patch(solid)
         axes.add_patch(hatch)
 
@@ -91,9 +89,7 @@ def hulls(axes: Axes, crowd: Crowd, who: Lives, secs: float, kind_colours: list[
         axes.add_patch(hull)
 
 
-def person_colours(
-    crowd: Crowd, who: Lives, secs: float, kind_colours: list[style.Colour]
-) -> dict[int, style.Colour]:
+def person_colours(crowd: Crowd, who: Lives, secs: float, kind_colours: list[style.Colour]) -> dict[int, style.Colour]:
     """Everybody's colour at one moment: that of the patch they are in."""
     found = {}
     for person in range(len(crowd)):
@@ -167,8 +163,9 @@ def captions(sheet: Figure, crowd: Crowd, who: Lives, secs: float, palette: dict
 def scale_bar(axes: Axes, corner: np.ndarray) -> None:
     """One metre, under the lower right corner of the floor."""
     x, z = corner
-    axes.plot([x - 1, x], [z, z], color=style.INK, linewidth=2.2, clip_on=False, zorder=10)
+    below = z + 0.016 * np.ptp(axes.get_xlim())
+    axes.plot([x - 1, x], [below, below], color=style.INK, linewidth=1.6, clip_on=False, zorder=10)
     axes.annotate(
-        "1 m", (x - 0.5, z), xytext=(0, -8), textcoords="offset points", size=9.5, color=style.INK,
+        "1 m", (x - 0.5, below), xytext=(0, -5), textcoords="offset points", size=9.5, color=style.INK,
         ha="center", va="top", annotation_clip=False,
     )  # fmt: skip

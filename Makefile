@@ -1,0 +1,133 @@
+# make demo   set everything up and make a crowd        make view   watch it in the browser
+# make test   every test                                make lint   every linter
+# make bench  our figures beside the reference          make fmt    format everything
+#
+# Every step is keyed on a file it makes, so that nothing is built twice: the virtual environment on a stamp inside
+# it, the compiled extension on itself, the studio on its built page, the demo on its report.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+MAKEFLAGS += --no-builtin-rules
+.DEFAULT_GOAL := help
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+DEMO := out/demo
+export VIRTUAL_ENV := $(CURDIR)/$(VENV)
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+
+VENV_MADE := $(VENV)/made
+EXTENSION := python/crowdquilt/_core.abi3.so
+NODE_MODULES := studio/node_modules/.package-lock.json
+PAGE := studio/dist/index.html
+STUDIO := python/crowdquilt/studio_dist/index.html
+CLIENTS := tests/clients/node_modules/.package-lock.json
+
+RUST_SOURCES := $(shell find src python/src -name '*.rs') Cargo.toml Cargo.lock python/Cargo.toml
+PYTHON_SOURCES := $(shell find python/crowdquilt -name '*.py')
+STUDIO_SOURCES := $(shell find studio/src studio/public -type f 2>/dev/null) \
+	$(wildcard studio/index.html studio/*.json studio/*.ts)
+LINTED := python/crowdquilt python/tests examples tests/clients
+
+.PHONY: help demo view bench setup studio test test-rust test-python test-studio test-browser lint fmt clean
+
+help:
+	@sed -n 's/^# \(make.*\)/\1/p' Makefile
+
+# --- setting up -------------------------------------------------------------------------------------------------------
+
+$(VENV_MADE):
+	@echo "== virtual environment"
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Crowdquilt needs Python 3.11 or newer")'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet 'maturin>=1.8,<2'
+	touch $@
+
+$(EXTENSION): $(VENV_MADE) $(RUST_SOURCES) python/pyproject.toml
+	@echo "== Rust core and Python package"
+	$(BIN)/maturin develop --quiet --release --extras dev --manifest-path python/Cargo.toml
+	touch $@
+
+$(NODE_MODULES): studio/package-lock.json
+	@echo "== packages of the studio"
+	npm --prefix studio ci --no-audit --no-fund --loglevel=error
+	touch $@
+
+$(PAGE): $(NODE_MODULES) $(STUDIO_SOURCES)
+	@echo "== studio"
+	npm --prefix studio run --silent build
+	touch $@
+
+# The package carries the built studio.
+$(STUDIO): $(PAGE)
+	rm -rf $(@D) && cp -R $(<D) $(@D)
+	touch $@
+
+$(CLIENTS): tests/clients/package.json
+	@echo "== other people's readers, for the tests of exports"
+	npm --prefix tests/clients install --no-audit --no-fund --loglevel=error
+	touch $@
+
+setup: $(EXTENSION) $(STUDIO)
+
+studio: $(STUDIO)
+
+# --- using ------------------------------------------------------------------------------------------------------------
+
+$(DEMO)/report.json: $(EXTENSION) $(PYTHON_SOURCES)
+	$(BIN)/crowdquilt demo -o $(DEMO)
+	@touch $(VENV)/demo-is-new
+
+demo: setup $(DEMO)/report.json
+	@if [ -e $(VENV)/demo-is-new ]; then rm $(VENV)/demo-is-new; \
+	else echo "Nothing has changed since $(DEMO) was made."; $(BIN)/crowdquilt demo -o $(DEMO) --show; fi
+
+view: setup $(DEMO)/report.json
+	$(BIN)/crowdquilt view $(DEMO)/crowd.crowd
+
+bench: setup
+	$(BIN)/crowdquilt bench
+
+# --- testing ----------------------------------------------------------------------------------------------------------
+
+test: test-rust test-python test-studio test-browser
+	@echo "== all tests passed; what was skipped is named above"
+
+# The profile of the extension: its dependencies are compiled once for both.
+test-rust:
+	@echo "== Rust tests"
+	cargo test --release --quiet
+
+test-python: setup $(CLIENTS) test-rust
+	@echo "== Python tests"
+	$(BIN)/python -m pytest -q -c python/pyproject.toml python/tests tests/clients
+
+test-studio: $(NODE_MODULES)
+	@echo "== studio tests"
+	npm --prefix studio run --silent test
+
+test-browser: setup
+	@echo "== browser tests"
+	npm --prefix studio run --silent e2e
+
+lint: setup $(NODE_MODULES)
+	@echo "== Rust"
+	cargo fmt --all --check
+	cargo clippy --quiet --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS='-D warnings' cargo doc --quiet --no-deps
+	@echo "== Python"
+	$(BIN)/ruff check --quiet --config python/pyproject.toml $(LINTED)
+	$(BIN)/ruff format --quiet --check --config python/pyproject.toml $(LINTED)
+	cd python && ../$(BIN)/mypy
+	@echo "== TypeScript"
+	npm --prefix studio run --silent check
+
+fmt: setup $(NODE_MODULES)
+	cargo fmt --all
+	$(BIN)/ruff check --quiet --fix --config python/pyproject.toml $(LINTED)
+	$(BIN)/ruff format --quiet --config python/pyproject.toml $(LINTED)
+	npm --prefix studio run --silent format
+
+clean:
+	rm -rf target out $(VENV) $(EXTENSION) $(dir $(STUDIO)) studio/dist studio/node_modules tests/clients/node_modules

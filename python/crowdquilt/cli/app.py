@@ -1,0 +1,47 @@
+"""The app all commands belong to, and what they share."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from crowdquilt._core import __version__
+
+CHECK_FAILED = 1
+BAD_INPUT = 2
+NOT_PERFECT = 3
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+console = Console(highlight=False)
+
+
+def example(*lines: str) -> str:
+    """The foot of a command's help: how it is called."""
+    return "[bold]Example[/bold]\n\n" + "\n\n".join(f"  [cyan]$ crowdquilt {line}[/cyan]" for line in lines)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        print(f"crowdquilt {__version__}")
+        raise typer.Exit
+
+
+@app.callback(epilog=example("demo -o out/demo", "view out/demo/crowd.crowd"))
+def crowdquilt(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and end.")
+    ] = False,
+) -> None:
+    """Stitch motion capture into crowds.
+
+    Captures are cut into motion patches, patches are tiled in space and time until no end is loose, and the crowd
+    is checked, exported and watched.
+    """

@@ -1,0 +1,130 @@
+"""`tile`, `check`, `export`: from a patch set to a crowd and on."""
+
+from __future__ import annotations
+
+import json
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from crowdquilt import check, export, report
+from crowdquilt._core import Crowd, CrowdquiltError, Outcome, PatchSet, Scene
+from crowdquilt.cli.app import CHECK_FAILED, NOT_PERFECT, app, console, example
+from crowdquilt.cli.progress import solve
+from crowdquilt.cli.tables import check_table
+
+
+class Method(StrEnum):
+    """How to tile."""
+
+    engine = "engine"
+    paper = "paper"
+
+
+def tell(outcome: Outcome) -> None:
+    """One line on how a solve ended."""
+    people, patches = len(outcome.crowd), len(outcome.crowd.instances)
+    made = f"{people} people, {patches} patches, {outcome.danglings} danglings in {outcome.solve_secs:.2f} s"
+    if outcome.status == "perfect":
+        console.print(f"[green]perfect[/green]: {made}")
+    elif outcome.status == "short":
+        console.print(f"[yellow]perfect, but a wish is unmet[/yellow]: {made}; {outcome.reason}", soft_wrap=True)
+    else:
+        console.print(f"[red]not perfect[/red]: {made}; {outcome.reason}", soft_wrap=True)
+
+
+@app.command(epilog=example("tile samples.patches --scene plaza.toml -o plaza.crowd --seed 7"))
+def tile(
+    patches: Annotated[Path, typer.Argument(help="Patch set (.patches).")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Crowd to write (.crowd).")],
+    scene: Annotated[Path | None, typer.Option(help="Scene (.toml); the demo's 12 x 12 m if not given.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Same seed, same crowd.")] = 1,
+    method: Annotated[Method, typer.Option(help="Our engine, or Algorithms 1 and 2 of the paper.")] = Method.engine,
+    time: Annotated[float, typer.Option(help="Longest search, in seconds.")] = 60.0,
+    characters: Annotated[int | None, typer.Option(help="How many people, instead of the scene's.")] = None,
+    interaction: Annotated[
+        float | None, typer.Option(help="Share of their time together, 0 to 1, instead of the scene's.")
+    ] = None,
+    threads: Annotated[int | None, typer.Option(min=1, help="Threads; all cores if not given.")] = None,
+    report_to: Annotated[
+        Path | None, typer.Option("--report", help="Also check the crowd and write report.json.")
+    ] = None,
+) -> None:
+    """Tile a scene with motion patches until no end is loose and nobody collides.
+
+    Ctrl-C keeps the best tiling so far. Exit code 3 if that, or the best within the time, is not perfect.
+    """
+    if not time > 0:
+        raise typer.BadParameter(f"expected more than 0 seconds, found {time}", param_hint="--time")
+    kinds = PatchSet.load(patches)
+    where = (Scene.load(scene) if scene else Scene.demo()).replace(characters=characters, interaction=interaction)
+    try:
+        outcome = solve(where, kinds, seed=seed, method=method, time=time, threads=threads)
+    except CrowdquiltError as error:
+        # The core speaks of "scene" and "patch set"; the user knows them by their files.
+        raise CrowdquiltError(name_files(str(error), scene, patches)) from None
+    out.parent.mkdir(parents=True, exist_ok=True)
+    outcome.crowd.save(out)
+    if report_to:
+        report.save(report.build(outcome.crowd, check.check(outcome.crowd), outcome), report_to)
+    tell(outcome)
+    console.print(f"{out}: written")
+    if outcome.status == "imperfect":
+        raise typer.Exit(NOT_PERFECT)
+
+
+def name_files(message: str, scene: Path | None, patches: Path) -> str:
+    """A message of the core with the file in front, where it names only the kind of input."""
+    for origin, file in (("scene: ", scene), ("patch set: ", patches)):
+        if file and message.startswith(origin):
+            return f"{file}: {message.removeprefix(origin)}"
+    return message
+
+
+@app.command("check", epilog=example("check out/demo/crowd.crowd"))
+def check_file(
+    crowd: Annotated[Path, typer.Argument(help="Crowd (.crowd).")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
+) -> None:
+    """Verify a finished crowd from its file alone. Exit code 1 if a row fails."""
+    found = Crowd.load(crowd)
+    result = check.check(found)
+    if as_json:
+        print(json.dumps(report.build(found, result), indent=2))
+    else:
+        console.print(check_table(result))
+        failed = len(result.failures)
+        verdict = f"[red]{failed} of {len(result.rows)} rows fail[/red]" if failed else "[green]every row holds[/green]"
+        console.print(verdict)
+    if not result.ok:
+        raise typer.Exit(CHECK_FAILED)
+
+
+@app.command("export", epilog=example("export plaza.crowd -o plaza.glb", "export plaza.crowd -o plaza_bvh"))
+def export_file(
+    crowd: Annotated[Path, typer.Argument(help="Crowd (.crowd).")],
+    out: Annotated[
+        Path,
+        typer.Option("--out", "-o", help="A .glb file; a .bvh file of one person; or a folder for all BVH files."),
+    ],
+    person: Annotated[int | None, typer.Option(help="Which person goes into the .bvh file.")] = None,
+) -> None:
+    """Write a crowd for other programs: glTF with skinned, animated people, or BVH."""
+    found = Crowd.load(crowd)
+    match out.suffix:
+        case ".glb":
+            export.save_glb(found, out)
+            console.print(f"{out}: {len(found)} people")
+        case ".bvh":
+            if person is None or not 0 <= person < len(found):
+                problem = f"a .bvh file holds one person: expected --person 0 to {len(found) - 1}, found {person}"
+                raise typer.BadParameter(problem, param_hint="--person")
+            export.save_person(found, person, out)
+            console.print(f"{out}: person {person}")
+        case "":
+            export.save_bvh(found, out)
+            console.print(f"{out}: {len(found)} BVH files")
+        case other:
+            raise CrowdquiltError(f"{out}: expected .glb, .bvh or a folder, found {other}")

@@ -1,0 +1,52 @@
+"""What commands print: tables of facts, kinds, rows of a check."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.markup import escape
+from rich.table import Table
+
+from crowdquilt._core import PatchSet, Report
+
+
+def number(value: float) -> str:
+    """A figure with as many digits as one reads."""
+    if value == round(value) and abs(value) < 1e6:
+        return f"{value:.0f}"
+    return f"{value:.1e}" if abs(value) >= 1e6 else f"{value:.4f}"
+
+
+def facts(values: dict[str, Any]) -> Table:
+    """Names on the left, values on the right."""
+    table = Table.grid(padding=(0, 2))
+    for name, value in values.items():
+        text = number(value) if isinstance(value, float) else value
+        text = ", ".join(str(v) for v in text) if isinstance(text, list) else text
+        table.add_row(f"[dim]{name.replace('_', ' ')}[/dim]", escape(str(text)))
+    return table
+
+
+def kind_table(patches: PatchSet) -> Table:
+    """The kinds of a set, without mirrored copies."""
+    table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
+    for title in ("kind", "people", "seconds", "contacts", "ports"):
+        table.add_column(title, justify="left" if title in ("kind", "ports") else "right")
+    for kind in patches.kinds:
+        if not kind.mirrored:
+            ports = ", ".join(f"{role.entry} → {role.exit}" for role in kind.roles)
+            contacts = str(kind.contacts) if kind.contacts else ""
+            table.add_row(escape(kind.name), str(kind.people), f"{kind.seconds:.2f}", contacts, ports)
+    return table
+
+
+def check_table(report: Report) -> Table:
+    """The contract, row by row."""
+    table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
+    for title in ("", "contract", "found", "limit", "", "worst at"):
+        table.add_column(title, justify="right" if title in ("found", "limit") else "left", overflow="fold")
+    for row in report.rows:
+        mark = "[green]✓[/green]" if row.ok else "[bold red]✗[/bold red]"
+        place = f"[dim]{escape(row.place)}[/dim]"
+        table.add_row(mark, escape(row.row), number(row.value), number(row.limit), row.unit, place)
+    return table

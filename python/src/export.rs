@@ -1,0 +1,22 @@
+//! Glue of `crowdquilt::export`.
+
+use std::borrow::Cow;
+
+use crowdquilt::export as core;
+use crowdquilt::motion::bvh;
+use pyo3::prelude::*;
+
+use crate::error::run;
+use crate::stage::Crowd;
+
+/// The bytes of a binary glTF file: everybody one skinned mesh on one skin, one animation at 30 keys per second.
+#[pyfunction]
+pub fn export_glb(py: Python<'_>, crowd: &Crowd) -> PyResult<Cow<'static, [u8]>> {
+    run(py, || Ok(core::glb(&crowd.0))).map(Cow::Owned)
+}
+
+/// The text of a BVH file of one person's motion, metres, 30 frames per second.
+#[pyfunction]
+pub fn export_bvh(py: Python<'_>, crowd: &Crowd, person: usize) -> PyResult<String> {
+    run(py, || core::clip(&crowd.0, person).map(|clip| bvh::write(&clip)))
+}

@@ -1,0 +1,279 @@
+//! Glue of `crowdquilt::tiling`.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
+
+use crowdquilt::tiling as core;
+use numpy::PyArray2;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
+use pyo3::prelude::*;
+
+use crate::error::{CrowdquiltError, internal, run, to_python};
+use crate::numbers::points2;
+use crate::patch::PatchSet;
+use crate::stage::Crowd;
+
+/// What to tile: a region with obstacles, a time, and wishes.
+#[pyclass(frozen, module = "crowdquilt")]
+pub struct Scene(core::Scene);
+
+#[pymethods]
+impl Scene {
+    /// Read a scene from a TOML file.
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        run(py, || core::Scene::load(&path)).map(Self)
+    }
+
+    /// Read a scene from TOML text.
+    #[staticmethod]
+    fn from_toml(py: Python<'_>, text: &str) -> PyResult<Self> {
+        run(py, || core::Scene::from_toml(text)).map(Self)
+    }
+
+    /// The demo's scene: 12 x 12 m, 20 s.
+    #[staticmethod]
+    fn demo() -> Self {
+        Self(core::Scene::demo())
+    }
+
+    /// The same scene with other wishes: number of people, share of their time together (0 to 1), seconds.
+    #[pyo3(signature = (*, characters=None, interaction=None, duration_secs=None))]
+    fn replace(
+        &self,
+        characters: Option<usize>,
+        interaction: Option<f32>,
+        duration_secs: Option<f32>,
+    ) -> PyResult<Self> {
+        let mut scene = self.0.clone();
+        let bad = |place: &str, expected: &str| {
+            Err(to_python(crowdquilt::Error::invalid("scene", place, format!("expected {expected}"))))
+        };
+        if let Some(n) = characters {
+            if !(1..=1_000_000).contains(&n) {
+                return bad("characters", &format!("1 to 1000000, found {n}"));
+            }
+            scene.characters = n;
+        }
+        if let Some(share) = interaction {
+            if !(0.0..=1.0).contains(&share) {
+                return bad("interaction", &format!("0 to 1, found {share}"));
+            }
+            scene.interaction = share;
+        }
+        if let Some(secs) = duration_secs {
+            if !(secs > 0.0 && secs <= 3600.0) {
+                return bad("duration_secs", &format!("more than 0 and at most 3600, found {secs}"));
+            }
+            scene.duration_secs = secs;
+        }
+        Ok(Self(scene))
+    }
+
+    /// (corners, 2): where everybody stays inside, as x, z in metres.
+    #[getter]
+    fn region<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        points2(py, &self.0.region.points)
+    }
+
+    /// One (corners, 2) array for each obstacle.
+    #[getter]
+    fn obstacles<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f32>>>> {
+        self.0.obstacles.iter().map(|o| points2(py, &o.points)).collect()
+    }
+
+    /// Length in seconds.
+    #[getter]
+    fn duration_secs(&self) -> f32 {
+        self.0.duration_secs
+    }
+
+    /// How many people are wished for.
+    #[getter]
+    fn characters(&self) -> usize {
+        self.0.characters
+    }
+
+    /// Which share of the people's time is wished for in patches of two or more.
+    #[getter]
+    fn interaction(&self) -> f32 {
+        self.0.interaction
+    }
+
+    fn __repr__(&self) -> String {
+        let Self(s) = self;
+        format!("Scene(characters={}, interaction={}, duration_secs={})", s.characters, s.interaction, s.duration_secs)
+    }
+}
+
+/// How far a run is. `phase` is "seed", "enrich", "close" or "mend".
+#[pyclass(frozen, get_all, module = "crowdquilt")]
+pub struct Progress {
+    phase: &'static str,
+    patches: usize,
+    characters: usize,
+    danglings: usize,
+    multi_person_share: f32,
+    energy: f32,
+    secs: f64,
+}
+
+fn progress(p: &core::Progress) -> Progress {
+    let phase = match p.phase {
+        core::Phase::Seed => "seed",
+        core::Phase::Enrich => "enrich",
+        core::Phase::Close => "close",
+        core::Phase::Mend => "mend",
+    };
+    Progress {
+        phase,
+        patches: p.patches,
+        characters: p.characters,
+        danglings: p.danglings,
+        multi_person_share: p.multi_person_share,
+        energy: p.energy,
+        secs: p.secs,
+    }
+}
+
+/// The best tiling of a run.
+///
+/// `status` is "perfect" (no dangling, no interpenetration, all wishes met), "short" (a wish is unmet) or "imperfect"
+/// (danglings or interpenetrations are left); `reason` says why it is not perfect.
+#[pyclass(frozen, get_all, module = "crowdquilt")]
+pub struct Outcome {
+    crowd: Py<Crowd>,
+    status: &'static str,
+    reason: String,
+    danglings: usize,
+    interpenetrations: usize,
+    solve_secs: f64,
+}
+
+#[pymethods]
+impl Outcome {
+    fn __repr__(&self) -> String {
+        format!("Outcome({}, danglings={}, solve_secs={:.2})", self.status, self.danglings, self.solve_secs)
+    }
+}
+
+fn outcome(py: Python<'_>, found: core::Outcome) -> PyResult<Outcome> {
+    let (status, reason) = match found.status {
+        core::Status::Perfect => ("perfect", String::new()),
+        core::Status::Short(reason) => ("short", reason),
+        core::Status::Imperfect(reason) => ("imperfect", reason),
+    };
+    Ok(Outcome {
+        crowd: Py::new(py, Crowd(Arc::new(found.crowd)))?,
+        status,
+        reason,
+        danglings: found.danglings,
+        interpenetrations: found.interpenetrations,
+        solve_secs: found.solve_secs,
+    })
+}
+
+/// Tile `scene` with the kinds of `patches`. The same seed gives the same crowd for any number of threads, unless
+/// time runs out.
+///
+/// `method` is "engine" (the project's) or "paper" (Algorithms 1 and 2 as published); `time` is the longest search in
+/// seconds; `threads` are as many as the machine has cores unless given. `progress(p)` is called about twenty times a
+/// second and stops the search by returning False. Ctrl-C stops it too: the KeyboardInterrupt that is raised has the
+/// best tiling so far as its attribute `outcome`.
+#[pyfunction]
+#[pyo3(signature = (scene, patches, *, seed=1, method="engine", time=60.0, threads=None, progress=None))]
+#[allow(clippy::too_many_arguments)]
+pub fn tile(
+    py: Python<'_>,
+    scene: &Scene,
+    patches: &PatchSet,
+    seed: u64,
+    method: &str,
+    time: f64,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Outcome> {
+    let method = match method {
+        "engine" => core::Method::Engine,
+        "paper" => core::Method::Paper,
+        other => {
+            return Err(PyValueError::new_err(format!("expected method \"engine\" or \"paper\", found {other:?}")));
+        }
+    };
+    if !(time > 0.0 && time <= 1e6) {
+        return Err(PyValueError::new_err(format!("expected a time of more than 0 seconds, found {time}")));
+    }
+    let options = core::Options { method, seed, time_secs: time };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
+    let pool = pool.map_err(|e| CrowdquiltError::new_err(format!("threads: {e}")))?;
+    let (found, interrupt) = watched(py, progress, |report| {
+        pool.install(|| core::tile(&scene.0, &patches.0, &options, &mut |p| report(p)))
+    });
+    let found = outcome(py, found?)?;
+    match interrupt {
+        None => Ok(found),
+        Some(error) => {
+            if error.is_instance_of::<PyKeyboardInterrupt>(py) {
+                error.value(py).setattr("outcome", found)?;
+            }
+            Err(error)
+        }
+    }
+}
+
+/// Runs `solve` on a thread of its own, so that this one can call Python back and hear Ctrl-C, which Python tells to
+/// its main thread only. Returns what was solved, and the exception that stopped it if one did.
+fn watched(
+    py: Python<'_>,
+    callback: Option<Py<PyAny>>,
+    solve: impl FnOnce(&(dyn Fn(&core::Progress) -> bool + Sync)) -> crowdquilt::Result<core::Outcome> + Send,
+) -> (PyResult<core::Outcome>, Option<PyErr>) {
+    let stop = AtomicBool::new(false);
+    let (sender, mut receiver) = mpsc::sync_channel::<core::Progress>(1);
+    std::thread::scope(|scope| {
+        let stop = &stop;
+        let worker = scope.spawn(move || {
+            solve(&|p| {
+                // A report that finds the one before not yet fetched is dropped: the next comes soon.
+                let _ = sender.try_send(*p);
+                !stop.load(Ordering::Relaxed)
+            })
+        });
+        let mut interrupt = None;
+        loop {
+            let listen = || receiver_wait(&mut receiver);
+            let heard = match py.detach(listen) {
+                Err(RecvTimeoutError::Disconnected) => break,
+                Err(RecvTimeoutError::Timeout) => Ok(true),
+                Ok(report) => ask(py, callback.as_ref(), &report),
+            };
+            match heard.and_then(|go_on| py.check_signals().map(|()| go_on)) {
+                Ok(true) => {}
+                Ok(false) => stop.store(true, Ordering::Relaxed),
+                Err(error) => {
+                    stop.store(true, Ordering::Relaxed);
+                    interrupt.get_or_insert(error);
+                }
+            }
+        }
+        let found = match py.detach(|| worker.join()) {
+            Ok(result) => result.map_err(to_python),
+            Err(panic) => Err(internal(&*panic)),
+        };
+        (found, interrupt)
+    })
+}
+
+fn receiver_wait(receiver: &mut mpsc::Receiver<core::Progress>) -> Result<core::Progress, RecvTimeoutError> {
+    receiver.recv_timeout(Duration::from_millis(50))
+}
+
+/// Tells Python about the progress; anything but False means: go on.
+fn ask(py: Python<'_>, callback: Option<&Py<PyAny>>, report: &core::Progress) -> PyResult<bool> {
+    let Some(callback) = callback else { return Ok(true) };
+    let answer = callback.call1(py, (progress(report),))?;
+    Ok(!answer.bind(py).is(pyo3::types::PyBool::new(py, false)))
+}
