@@ -54,7 +54,7 @@ export function debugHandle(ready: Promise<void>, store: Store, player: Player, 
       return at ? { x: box.left + ((at.x + 1) / 2) * box.width, y: box.top + ((1 - at.y) / 2) * box.height } : null;
     },
     bodies: (shown) => {
-      if (picture.drawn) picture.drawn.people.body.visible = picture.drawn.people.spots.visible = shown;
+      store.set("bodies", shown);
       return drawn();
     },
     measure: (pictures) => {

@@ -25,6 +25,7 @@ const store = new Store();
 store.set("view", parameters.view);
 store.set("color", parameters.color);
 store.set("outlines", parameters.outlines);
+store.set("bodies", parameters.bodies);
 
 const player = new Player(store);
 installMessage(page, store);

@@ -9,6 +9,7 @@ export interface Parameters {
   view: View;
   color: ColorMode;
   outlines: Outlines;
+  bodies: boolean;
   person: number | null;
   follow: boolean;
   paused: boolean;
@@ -36,6 +37,7 @@ export function readParameters(query: string): Parameters {
     view: one("view", VIEWS, "persp"),
     color: one("color", COLOR_MODES, "character"),
     outlines: one("outlines", OUTLINES, "shared"),
+    bodies: q.get("bodies") !== "0",
     person: person === null ? null : Math.floor(person),
     follow: q.get("follow") === "1",
     paused: q.get("paused") === "1",

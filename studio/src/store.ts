@@ -22,6 +22,8 @@ export interface State {
   view: View;
   color: ColorMode;
   outlines: Outlines;
+  /** Bodies are drawn. */
+  bodies: boolean;
   /** Index of the selected person. */
   person: number | null;
   follow: boolean;
@@ -52,6 +54,7 @@ export class Store {
     view: "persp",
     color: "character",
     outlines: "shared",
+    bodies: true,
     person: null,
     follow: false,
     problem: null,

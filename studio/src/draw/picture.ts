@@ -116,6 +116,7 @@ export class Picture {
     stage.renderer.info.reset();
     people.uniforms.colorMode.value = COLOR_MODES.indexOf(store.get("color"));
     people.uniforms.chosen.value = store.get("person") ?? -1;
+    people.body.visible = people.spots.visible = store.get("bodies");
     people.update(time, lift);
     outlines.update(time, lift, store.get("outlines"), store.get("color"));
     loom.group.visible = inLoom;
