@@ -258,13 +258,17 @@ pub(super) fn easy_closings(library: &Library, from: Port, to: Port) -> usize {
     closings.iter().filter(easy).count()
 }
 
-/// Cuts a deformed strand into the pieces of its roles, sharing out the ticks in proportion to the sources'.
+/// Cuts a deformed strand into the pieces of its roles, sharing out the ticks in proportion to the sources'; `None` if
+/// the hips would turn too fast.
 fn split(view: View, closing: &Closing, path: &MotionPath, begin: i32, end: i32) -> Option<Vec<Piece>> {
     let role = |r: u32| &view.library.roles[r as usize];
     let first = closing.roles[0].expect("a closing has a first role");
-    let piece = |r, path, begin, end| Piece::along(view.library, view.domain, r, NO_INSTANCE, path, begin, end);
+    let piece = |r: u32, path: MotionPath, begin: i32, end: i32| {
+        let hurried = role(r).is_hurried(&path, end - begin, view.library.fastest[0]);
+        (!hurried).then(|| Piece::along(view.library, view.domain, r, NO_INSTANCE, path, begin, end))
+    };
     let Some(second) = closing.roles[1] else {
-        return Some(vec![piece(first, path.clone(), begin, end)]);
+        return Some(vec![piece(first, path.clone(), begin, end)?]);
     };
     let cut = role(first).ticks as usize;
     let share = cut as f32 / (path.len() - 1) as f32;
@@ -277,8 +281,8 @@ fn split(view: View, closing: &Closing, path: &MotionPath, begin: i32, end: i32)
         headings: path.headings[range].to_vec(),
     };
     Some(vec![
-        piece(first, part(0..=cut), begin, begin + ticks),
-        piece(second, part(cut..=path.len() - 1), begin + ticks, end),
+        piece(first, part(0..=cut), begin, begin + ticks)?,
+        piece(second, part(cut..=path.len() - 1), begin + ticks, end)?,
     ])
 }
 

@@ -31,6 +31,8 @@ const BUSIEST: f32 = 0.7;
 /// Tries per person in the sweep through time, and how far ahead of it patches are put, ticks.
 const SWEEP_TRIES: usize = 1000;
 const SWEEP_TICKS: i32 = 30;
+/// States expanded to mend a fault.
+const MEND_EXPANSIONS: usize = 300;
 /// Rounds of mending.
 const MEND_ROUNDS: usize = 30;
 /// Time between two reports of progress.
@@ -220,7 +222,7 @@ fn mend_all(
             return (bodies, faults.len());
         }
         for fault in faults {
-            mend(tracks, fault, taste, rng);
+            mend(tracks, fault, Taste { expansions: MEND_EXPANSIONS, ..taste }, rng);
         }
     }
 }

@@ -7,12 +7,14 @@ use super::footprint::{Footprint, footprints, reach};
 use crate::deform::{Limits, Strand};
 use crate::geom::Ground;
 use crate::motion::{JOINT_COUNT, Motion, MotionPath};
-use crate::patch::{PatchSet, fastest_turns};
+use crate::patch::{PatchSet, fastest_turns, turn_between};
 
 /// Growth of footprints: what blending, foot locking and sampling between frames may move a body, metres.
 const MARGIN: f32 = 0.02;
 /// Warped in time, a joint may turn this much faster than the captures' fastest.
 const RUSH: f32 = 1.1;
+/// Bent, hips may turn this much faster; blending at stitches takes up the rest of what is let pass.
+const HURRY: f32 = 1.05;
 /// Longest strand of two single-person kinds that closes a gap, in frames.
 const MAX_STRAND_FRAMES: usize = 110;
 
@@ -38,6 +40,8 @@ pub(super) struct Role {
     pub entry: Ground,
     /// Tick of the patch's clock at which it begins.
     pub begin: i32,
+    /// How much the hips turn from frame to frame, radians.
+    pub hips_turns: Vec<f32>,
     /// Footprints per frame.
     pub footprints: Vec<Footprint>,
     /// Radius of each footprint around the path point.
@@ -160,10 +164,27 @@ fn prepare(set: &PatchSet, kind: u32, role: u32, limits: &Limits, fastest: &[f32
         exit_group: fragment.exit_group,
         entry,
         begin: fragment.begin as i32,
+        hips_turns: hips_turns(&fragment.motion),
         reach: footprints.iter().map(reach).collect(),
         footprints,
         path,
     }
+}
+
+impl Role {
+    /// True if bending along `path` over `ticks` makes the hips turn faster than `fastest`, radians per frame.
+    pub fn is_hurried(&self, path: &MotionPath, ticks: i32, fastest: f32) -> bool {
+        let rate = self.ticks as f32 / ticks as f32;
+        let bends = path.headings.windows(2).zip(self.path.headings.windows(2));
+        let bends = bends.map(|(now, then)| ((now[1] - now[0]) - (then[1] - then[0])).abs());
+        // Where nothing bends the range of ticks has seen to it.
+        self.hips_turns.iter().zip(bends).any(|(own, bend)| bend > 1e-4 && (own + bend) * rate > HURRY * fastest)
+    }
+}
+
+fn hips_turns(motion: &Motion) -> Vec<f32> {
+    let hips = |f: usize| motion.path.at(f).rotation() * motion.pose(f)[0];
+    (1..motion.len()).map(|f| turn_between(hips(f - 1), hips(f))).collect()
 }
 
 /// The limits' range, cut so that no joint is sped up beyond what the set's captures show of it.

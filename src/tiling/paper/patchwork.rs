@@ -5,22 +5,16 @@
 use super::super::bake::Chains;
 use super::super::bridge::Port;
 use super::super::domain::Domain;
-use super::super::library::{Library, Role};
+use super::super::library::Library;
 use super::super::occupancy::{Occupancy, Piece, PieceId, depth};
 use super::super::outcome::{Phase, Progress};
 use super::anneal::energy;
 use super::ports::{ENTRY, EXIT, NONE, PortId, Ports, Reach};
 use super::shape::{Shape, same, shapes};
 use crate::geom::{Ground, wrap_angle};
-use crate::motion::MotionPath;
-use crate::patch::turn_between;
 
 /// People of one patch may come this much closer than captured, metres.
 const CLOSER: f32 = 0.01;
-
-/// Hips may turn this much faster than anywhere in the captures; blending at stitches takes up the rest of what is let
-/// pass.
-const HURRY: f32 = 1.05;
 
 /// A kind placed as it was captured.
 #[derive(Clone, Copy, Debug)]
@@ -77,8 +71,6 @@ pub(super) struct Patchwork<'a> {
     /// Walls and time.
     pub domain: &'a Domain,
     shapes: Vec<Shape>,
-    /// How much the hips of each role turn from frame to frame.
-    turns: Vec<Vec<f32>>,
     occupancy: Occupancy,
     instances: Vec<Option<Instance>>,
     /// The port each port is stitched to, or NONE.
@@ -97,7 +89,6 @@ impl<'a> Patchwork<'a> {
             library,
             domain,
             shapes: shapes(library),
-            turns: library.roles.iter().map(|role| hips_turns(library, role)).collect(),
             occupancy: Occupancy::new(domain, library),
             instances: vec![],
             partners: vec![],
@@ -326,21 +317,10 @@ impl<'a> Patchwork<'a> {
         let rest = placement.world_from_patch.then(role.entry);
         let grounds = [ends[0].at, ends[1].at];
         let path = self.shapes[role_id as usize].deform(role, rest, grounds, &self.library.limits)?;
-        if self.is_hurried(role_id, &path, end - begin) {
+        if role.is_hurried(&path, end - begin, self.library.fastest[0]) {
             return None;
         }
         Some(Piece::along(self.library, self.domain, role_id, instance, path, begin, end))
-    }
-
-    /// True if bending makes the hips turn faster than anywhere in the captures.
-    fn is_hurried(&self, role_id: u32, path: &MotionPath, ticks: i32) -> bool {
-        let role = &self.library.roles[role_id as usize];
-        let rate = role.ticks as f32 / ticks as f32;
-        let bends = path.headings.windows(2).zip(role.path.headings.windows(2));
-        let bends = bends.map(|(now, then)| ((now[1] - now[0]) - (then[1] - then[0])).abs());
-        let fastest = HURRY * self.library.fastest[0];
-        // Where nothing bends the kind's own range of ticks has seen to it.
-        self.turns[role_id as usize].iter().zip(bends).any(|(own, bend)| bend > 1e-4 && (own + bend) * rate > fastest)
     }
 
     /// True if no two people of one patch came closer than captured by the deformation of their legs.
@@ -481,12 +461,6 @@ impl<'a> Patchwork<'a> {
             secs: 0.0,
         }
     }
-}
-
-fn hips_turns(library: &Library, role: &Role) -> Vec<f32> {
-    let motion = &library.set.kinds[role.kind as usize].fragments[role.role as usize].motion;
-    let hips = |f: usize| motion.path.at(f).rotation() * motion.pose(f)[0];
-    (1..motion.len()).map(|f| turn_between(hips(f - 1), hips(f))).collect()
 }
 
 fn midpoint(a: Ground, b: Ground) -> Ground {
