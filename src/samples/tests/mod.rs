@@ -10,17 +10,12 @@ use glam::{Quat, Vec3};
 
 use super::*;
 
-#[test]
-#[ignore]
-fn dump() {
-    let dir = std::env::var("SAMPLES_OUT").unwrap();
-    write(Path::new(&dir), 1).unwrap();
-}
-
 /// Global joint transforms by frame.
 type Globals = Vec<Vec<(Vec3, Quat)>>;
 
-/// The takes of seed 1, and everybody's joints.
+const SEED: u64 = 1;
+
+/// The takes of one seed, and everybody's joints.
 static TAKES: LazyLock<Vec<(Take, Vec<Globals>)>> = LazyLock::new(|| {
     let globals = |clip: &Clip| {
         let mut out = Vec::new();
@@ -31,7 +26,7 @@ static TAKES: LazyLock<Vec<(Take, Vec<Globals>)>> = LazyLock::new(|| {
             })
             .collect()
     };
-    generate(1).into_iter().map(|take| (take.clone(), take.clips.iter().map(globals).collect())).collect()
+    generate(SEED).into_iter().map(|take| (take.clone(), take.clips.iter().map(globals).collect())).collect()
 });
 
 fn frame(seconds: f32) -> usize {
