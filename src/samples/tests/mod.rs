@@ -56,3 +56,20 @@ fn written_files_are_what_the_take_names() {
     }
     std::fs::remove_dir_all(&dir).unwrap();
 }
+
+#[test]
+fn positions_survive_writing_and_reading_to_a_tenth_of_a_millimetre() {
+    for (take, globals) in TAKES.iter().filter(|(t, _)| ["sit", "stretch", "hug-stand"].contains(&t.file.name.as_str()))
+    {
+        for (clip, joints) in take.clips.iter().zip(globals) {
+            let read = bvh::read(bvh::write(clip).as_bytes()).unwrap();
+            assert_eq!(read.frames(), clip.frames());
+            let mut out = Vec::new();
+            for (f, want) in joints.iter().enumerate() {
+                read.globals(f, &mut out);
+                let far = out.iter().zip(want).map(|(a, b)| (a.0 - b.0).length()).fold(0.0, f32::max);
+                assert!(far < 1e-4, "{} frame {f}: {far}", clip.name);
+            }
+        }
+    }
+}
