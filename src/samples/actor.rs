@@ -2,13 +2,13 @@
 //!
 //! Time runs in frames of 30 per second, so that every port lies on a frame of the later stages.
 
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
+use super::acting::{Pulse, Sight};
 use super::footsteps::{Base, Feet, Placement, Stance};
 use super::gait::{Gait, PhaseTrack};
-use super::gesture::{ELBOW, Grip, Reach};
+use super::gesture::Reach;
 use super::path::{Path, PathPlan};
-use super::posture::Channel;
 use super::timeline::Span;
 use crate::geom::Ground;
 use crate::motion::{FPS, Foot};
@@ -22,23 +22,6 @@ pub(super) fn secs(frame: i32) -> f32 {
 
 pub(super) fn other(foot: Foot) -> Foot {
     if foot == Foot::Left { Foot::Right } else { Foot::Left }
-}
-
-/// A channel moved by some amount over a span.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pulse {
-    pub channel: Channel,
-    pub span: Span,
-    pub amount: f32,
-}
-
-/// What the eyes are on.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Sight {
-    /// Another person of the take.
-    Person(usize),
-    /// A place relative to the path's frame.
-    Beside(Vec3),
 }
 
 /// A person's performance. The cursor `now` moves on with every move; gestures are laid from the cursor on.
@@ -133,8 +116,6 @@ impl Actor {
         self.plan.build(secs(end) + 2.0, place.then(local.inverse()))
     }
 
-    // --- Moves -------------------------------------------------------------------------------------------------
-
     /// Stands for `frames`, without a port at the end.
     pub fn wait(&mut self, frames: i32) {
         self.now += frames;
@@ -209,7 +190,11 @@ impl Actor {
         let t1 = t0 + secs(gait.half * count as i32);
         self.turn(angle, t0 - 0.05, t1 + 0.05);
         self.plan.speeds.extend([(t0, gait.speed), (0.5 * (t0 + t1), gait.speed * dip), (t1, gait.speed)]);
+        let from = self.now;
         self.walk(gait, count);
+        // No port in the middle of a turn.
+        let to = self.now;
+        self.ports.retain(|p| p.0 <= from || p.0 >= to);
     }
 
     /// From mid-stance to standing, turning by `turn`; port at the end.
@@ -234,7 +219,9 @@ impl Actor {
     pub fn step(&mut self, foot: Foot, offset: Ground, frames: i32) {
         let t0 = self.t();
         let at = |u: f32| t0 + u * secs(frames);
-        self.lift(foot, [at(-0.25), at(0.06), at(0.34)], 0.42);
+        // Stepping back, the foot leaves flat.
+        let off_pitch = if offset.position.y < -0.1 { 0.15 } else { 0.42 };
+        self.lift(foot, [at(-0.25), at(0.06), at(0.34)], off_pitch);
         self.land(foot, Base::Stand, t0, offset, [at(0.84), at(0.92), at(1.25)], 0.02);
         self.now += frames;
     }
@@ -295,43 +282,6 @@ impl Actor {
         let stance =
             Stance { foot, placement, strike, flat, loaded, unload, heel_off, toe_off, strike_pitch, off_pitch, place };
         self.feet[foot as usize].stances.push(stance);
-    }
-
-    // --- Gestures (times in seconds from the cursor) --------------------------------------------------------------
-
-    fn span(&self, times: [f32; 4]) -> Span {
-        Span(times.map(|t| t + self.t()))
-    }
-
-    /// Moves a channel by `amount`, over the span of times.
-    pub fn pulse(&mut self, channel: Channel, times: [f32; 4], amount: f32) {
-        let span = self.span(times);
-        self.pulses.push(Pulse { channel, span, amount });
-    }
-
-    /// Several channels over one span.
-    pub fn pose(&mut self, times: [f32; 4], amounts: &[(Channel, f32)]) {
-        for &(channel, amount) in amounts {
-            self.pulse(channel, times, amount);
-        }
-    }
-
-    /// Looks at something.
-    pub fn look(&mut self, times: [f32; 4], sight: Sight) {
-        let span = self.span(times);
-        self.gazes.push((span, sight));
-    }
-
-    /// Leads a hand along grips.
-    pub fn reach(&mut self, side: Foot, times: [f32; 4], grips: Vec<(f32, Grip)>) {
-        self.reach_with(side, times, grips, ELBOW);
-    }
-
-    /// Leads a hand along grips with the elbow towards a direction of the chest's frame (given for the left arm).
-    pub fn reach_with(&mut self, side: Foot, times: [f32; 4], grips: Vec<(f32, Grip)>, elbow: Vec3) {
-        let t = self.t();
-        let grips = grips.into_iter().map(|(at, g)| (at + t, g)).collect();
-        self.reaches.push(Reach { side, span: self.span(times), grips, elbow });
     }
 }
 

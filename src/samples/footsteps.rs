@@ -94,12 +94,13 @@ impl Feet {
         self.stances.iter().map(|s| ramp(t, s.strike, s.loaded) * (1.0 - ramp(t, s.unload, s.toe_off))).sum()
     }
 
-    /// The foot at `t`; `lift` raises the heel of a planted foot further (radians).
-    pub fn pose(&self, t: f32, lift: f32) -> FootPose {
+    /// The foot at `t`; `lift` raises the heel of a planted foot further, a foot in the air follows
+    /// `body`, the path's place.
+    pub fn pose(&self, t: f32, lift: f32, body: Ground) -> FootPose {
         let next = self.stances.partition_point(|s| s.strike <= t);
         let now = &self.stances[next.saturating_sub(1)];
         match self.stances.get(next) {
-            Some(after) if t > now.toe_off => swing(now, after, t),
+            Some(after) if t > now.toe_off => swing(now, after, t, body),
             _ => planted(now, t, lift),
         }
     }
@@ -131,7 +132,7 @@ fn planted(s: &Stance, t: f32, lift: f32) -> FootPose {
     FootPose { ankle, rotation, toe: (-pitch).clamp(0.0, TOE_LIMIT) }
 }
 
-fn swing(from: &Stance, to: &Stance, t: f32) -> FootPose {
+fn swing(from: &Stance, to: &Stance, t: f32, body: Ground) -> FootPose {
     let span = to.strike - from.toe_off;
     let u = (t - from.toe_off) / span;
     let (start, goal) = (planted(from, from.toe_off, 0.0), planted(to, to.strike, 0.0));
@@ -153,8 +154,18 @@ fn swing(from: &Stance, to: &Stance, t: f32) -> FootPose {
         u,
     );
     let travel = travel(u);
-    let ball = Vec3::new(a.x + (b.x - a.x) * travel, height, a.z + (b.z - a.z) * travel);
-    let heading = from.place.heading + (to.place.heading - from.place.heading) * ease(u);
+    let free = (std::f32::consts::PI * u).sin().powi(2);
+    let mut ground = Vec2::new(a.x + (b.x - a.x) * travel, a.z + (b.z - a.z) * travel);
+    if from.placement.base == Base::Walk || to.placement.base == Base::Walk {
+        // A walker's foot comes by close to the other, wherever it is from and goes to.
+        let mut beside = body.inverse().apply(ground);
+        beside.x += 0.8 * free * (1.2 * foothold(Base::Walk, to.foot).position.x - beside.x);
+        ground = body.apply(beside);
+    }
+    let ball = Vec3::new(ground.x, height, ground.y);
+    // In the air the foot looks where the body does.
+    let placed = from.place.heading + (to.place.heading - from.place.heading) * ease(u);
+    let heading = placed + (body.heading + foothold(Base::Walk, to.foot).heading - placed) * free;
     let rotation = pitched(heading, pitch);
     let toe = start.toe * (1.0 - ease(u / 0.35));
     FootPose { ankle: ball - rotation * BALL, rotation, toe }

@@ -1,9 +1,10 @@
 //! Generated sample captures: what Crowdquilt works on when it is given nothing else.
 //!
-//! Each take is planned as a performance ([`actor`]): a root [`path`], [`footsteps`] on it, and [`gesture`]s and
-//! posture pulses over time. [`perform`] turns a plan into motion with the [`gait`] curves of gait analysis and
-//! inverse kinematics, and [`scene`] adds the ground truth: foot plants, contacts, ports, patches, props.
+//! Each take is planned as a performance (`actor`): a root `path`, `footsteps` on it, and `gesture`s and
+//! posture pulses over time (`acting`). `perform` turns a plan into motion with the `gait` curves of gait analysis and
+//! inverse kinematics, and `scene` adds the ground truth: foot plants, contacts, ports, patches, props.
 
+mod acting;
 mod actor;
 mod footsteps;
 mod gait;

@@ -4,7 +4,8 @@ use std::f32::consts::FRAC_PI_2;
 
 use glam::{Quat, Vec2, Vec3};
 
-use super::actor::{Actor, Sight, secs};
+use super::acting::Sight;
+use super::actor::{Actor, secs};
 use super::footsteps::{Base, FootPose};
 use super::gait::{GaitPose, gait_pose};
 use super::gesture::{hanging, set_arm};
@@ -130,8 +131,8 @@ fn prepare_frame(actor: &Actor, path: &Path, t: f32, speed: f32) -> Frame {
     }
     let gait = gait_pose(actor.phase.at(t), speed);
     let lifts = [channels[Channel::HeelUpLeft], channels[Channel::HeelUpRight]];
-    let feet = [0, 1].map(|i| actor.feet[i].pose(t, lifts[i]));
     let at = path.at(t);
+    let feet = [0, 1].map(|i| actor.feet[i].pose(t, lifts[i], at));
     let local = Vec2::new(channels[Channel::HipsLeft], channels[Channel::HipsForward]);
     let pelvis = Quat::from_rotation_y(at.heading + gait.pelvis_yaw + channels[Channel::PelvisYaw])
         * Quat::from_rotation_x(0.035 + gait.pelvis_pitch + channels[Channel::PelvisPitch])
@@ -243,7 +244,7 @@ fn set_head(body: &mut Body, f: &Frame, heading: f32, (yaw, pitch): (f32, f32), 
     // Eyes do the rest of the way.
     let yaw = heading + 0.85 * yaw + c[Channel::HeadYaw] + 0.02 * temper.head[0].at(f.t);
     // A bent body takes the head along by half.
-    let chest_pitch = (body.rotation(SPINE2) * Vec3::Z).y.asin() * -1.0;
+    let chest_pitch = -(body.rotation(SPINE2) * Vec3::Z).y.asin();
     let carried = 0.45 * (chest_pitch - 0.06).clamp(-FRAC_PI_2, FRAC_PI_2);
     let pitch = 0.8 * pitch + carried + c[Channel::HeadPitch] + 0.014 * temper.head[1].at(f.t);
     let roll = c[Channel::HeadRoll] + 0.3 * c[Channel::SpineRoll];

@@ -7,7 +7,8 @@ use super::meet::{Encounter, both, facing};
 use crate::geom::Ground;
 use crate::motion::BodyPart::{LeftHand, RightHand, Torso};
 use crate::motion::Foot::{Left, Right};
-use crate::samples::actor::{Actor, Sight};
+use crate::samples::acting::Sight;
+use crate::samples::actor::Actor;
 use crate::samples::gait::NORMAL;
 use crate::samples::gesture::Relative::Path;
 use crate::samples::posture::Channel::*;
@@ -15,7 +16,7 @@ use crate::samples::scene::Scene;
 
 const SHAKE: f32 = 0.88;
 const FIVE: f32 = 0.84;
-const HUG: f32 = 0.37;
+const HUG: f32 = 0.40;
 
 fn rad(degrees: f32) -> f32 {
     degrees.to_radians()
@@ -115,7 +116,7 @@ fn bow(scene: &mut Scene, t: f32) -> f32 {
 
 /// Right arm over, left arm under.
 fn hug(scene: &mut Scene, t: f32) -> f32 {
-    let (touch, release) = (t + 0.80, t + 1.45);
+    let (touch, release) = (t + 0.75, t + 1.35);
     for (i, a) in scene.actors.iter_mut().enumerate() {
         // The other's middle in this one's frame is a little to one side.
         let side = if i == 0 { 0.07 } else { -0.07 };
@@ -124,7 +125,7 @@ fn hug(scene: &mut Scene, t: f32) -> f32 {
             grip(Path, palm, [0.8 - 0.8 * open, -0.5 + 0.6 * open, 0.1 + 0.9 * open], [0.5 * open, -0.4, -1.0 + open])
         };
         let under = |open: f32| {
-            let palm = [side + 0.09 + 0.27 * open, 1.14 + 0.04 * open, HUG + 0.115 - 0.20 * open];
+            let palm = [side + 0.165 + 0.20 * open, 1.19 + 0.02 * open, HUG + 0.14 - 0.21 * open];
             grip(Path, palm, [-1.0 + open, 0.1, 0.1 + 0.9 * open], [-0.5 * open, 0.0, -1.0 + open])
         };
         let times = [t, t + 0.5, release, release + 0.6];
@@ -138,7 +139,7 @@ fn hug(scene: &mut Scene, t: f32) -> f32 {
             (release + 0.45, over(1.0)),
         ];
         a.reach_with(Right, times, grips, Vec3::new(1.0, 0.45, -0.1));
-        let flank = grip(Path, [side + 0.28, 1.15, HUG + 0.03], [-0.1, 0.1, 1.0], [-1.0, 0.0, 0.0]);
+        let flank = grip(Path, [side + 0.31, 1.19, HUG + 0.07], [-0.1, 0.1, 1.0], [-1.0, 0.0, 0.0]);
         let grips = vec![
             (t + 0.1, under(1.0)),
             (t + 0.47, flank),
@@ -147,14 +148,14 @@ fn hug(scene: &mut Scene, t: f32) -> f32 {
             (release + 0.22, flank),
             (release + 0.45, under(1.0)),
         ];
-        a.reach_with(Left, times, grips, Vec3::new(1.0, -0.35, -0.1));
+        a.reach_with(Left, times, grips, Vec3::new(1.0, -0.75, -0.05));
         a.pose(
             [t + 0.2, touch, release, release + 0.5],
             &[(SpinePitch, 0.10), (PelvisPitch, 0.07), (HeadYaw, 0.15), (HipsForward, 0.005)],
         );
         // The heads pass each other to the side, and stay there until the bodies are apart.
-        a.pose([t + 0.1, touch - 0.15, release + 0.2, release + 0.7], &[(SpineRoll, 0.13), (HeadRoll, 0.09)]);
-        step_apart(a, release);
+        a.pose([t + 0.1, touch - 0.15, release + 0.2, release + 0.7], &[(SpineRoll, 0.14), (HeadRoll, 0.10)]);
+        step_apart(a, release + 0.20);
         // Pats the back.
         a.pose([touch + 0.25, touch + 0.4, touch + 0.45, touch + 0.6], &[(SpinePitch, 0.012)]);
     }
@@ -208,6 +209,9 @@ fn five_in_passing() -> Scene {
         a.look([-1.3, -0.8, 0.05, 0.45], Sight::Person(1 - i));
         a.pose([-0.4, -0.05, 0.06, 0.45], &[(SpineYaw, 0.10), (SpinePitch, 0.02)]);
         a.walk(NORMAL, 2);
+        // No port while the arm is up.
+        let (entry, exit) = (entries[i], a.now);
+        a.ports.retain(|p| p.0 <= entry || p.0 >= exit);
         actors.push(a);
     }
     let exits: Vec<i32> = actors.iter().map(|a| a.now).collect();

@@ -2,7 +2,8 @@
 
 use crate::geom::Ground;
 use crate::motion::Foot::{Left, Right};
-use crate::samples::actor::{Actor, Sight};
+use crate::samples::acting::Sight;
+use crate::samples::actor::Actor;
 use crate::samples::gait::{Gait, NORMAL, SLOW};
 use crate::samples::scene::Scene;
 
@@ -65,7 +66,7 @@ pub(super) fn meet(e: &Encounter, coming: Coming) -> Scene {
 
 /// Actors who are at their places at the same moment, their cursors there; and the frames of the ports before.
 pub(super) fn arrive(places: &[Ground], coming: Coming) -> (Vec<Actor>, Vec<i32>) {
-    let plan = |i: usize| if i % 2 == 0 { (NORMAL, 1) } else { (SLOW, 1) };
+    let plan = |i: usize| if i.is_multiple_of(2) { (NORMAL, 1) } else { (SLOW, 1) };
     let approach = |i: usize| {
         let mut a = Actor::standing();
         walk_up(&mut a, plan(i), i);
@@ -92,7 +93,7 @@ pub(super) fn arrive(places: &[Ground], coming: Coming) -> (Vec<Actor>, Vec<i32>
 
 /// Walks and stops; returns the frame of the port before stopping.
 pub(super) fn walk_up(a: &mut Actor, (gait, halves): (Gait, usize), i: usize) -> i32 {
-    a.start(if i % 2 == 0 { Left } else { Right }, gait, 0.0);
+    a.start(if i.is_multiple_of(2) { Left } else { Right }, gait, 0.0);
     a.walk(gait, halves);
     let entry = a.now;
     a.stop(0.0);

@@ -5,7 +5,8 @@ use glam::{Vec2, Vec3};
 use super::solo;
 use crate::geom::Ground;
 use crate::motion::Foot;
-use crate::samples::actor::{Actor, Sight};
+use crate::samples::acting::Sight;
+use crate::samples::actor::Actor;
 use crate::samples::posture::Channel::*;
 use crate::samples::scene::Scene;
 

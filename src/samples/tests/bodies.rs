@@ -23,7 +23,6 @@ fn joints_turn_at_human_speeds() {
             }
         }
     }
-    println!("fastest joint {worst:?}");
     assert!(worst.0 < 900.0, "{worst:?}");
 }
 
@@ -41,7 +40,6 @@ fn roots_accelerate_like_people() {
             }
         }
     }
-    println!("greatest acceleration {worst:?}");
     assert!(worst.0 < 9.0, "{worst:?}");
 }
 
@@ -73,7 +71,6 @@ fn knees_and_elbows_bend_the_right_way() {
             }
         }
     }
-    println!("knees {knee:?} elbows {elbow:?}");
 }
 
 #[test]
