@@ -7,10 +7,9 @@ import inspect
 from pathlib import Path
 
 import crowdfile
+import crowdquilt as cq
 import numpy as np
 import pytest
-
-import crowdquilt as cq
 from crowdquilt import _core
 
 

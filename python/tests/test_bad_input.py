@@ -6,10 +6,9 @@ import json
 from pathlib import Path
 
 import crowdfile
+import crowdquilt as cq
 import pytest
 from conftest import SCENE, crowdquilt
-
-import crowdquilt as cq
 
 BVH = """HIERARCHY
 ROOT Hips

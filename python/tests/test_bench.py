@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import fields
 
-import pytest
-
 import crowdquilt as cq
+import pytest
 from crowdquilt import bench
 
 

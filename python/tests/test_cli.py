@@ -10,10 +10,9 @@ import sys
 import time
 from pathlib import Path
 
+import crowdquilt as cq
 import pytest
 from conftest import crowdquilt
-
-import crowdquilt as cq
 
 COMMANDS = ["samples", "inspect", "patches", "tile", "check", "export", "plot", "view", "bench", "demo"]
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import crowdquilt as cq
 import pytest
 from conftest import crowdquilt
-
-import crowdquilt as cq
 from crowdquilt import report
 
 

@@ -7,10 +7,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import crowdquilt as cq
 import pytest
 from conftest import ROOT, crowdquilt
-
-import crowdquilt as cq
 
 
 def digest(path: Path) -> str:

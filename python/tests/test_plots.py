@@ -5,16 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 import crowdfile
+import crowdquilt as cq
 import matplotlib.image
 import numpy as np
 import pytest
 from conftest import crowdquilt
-
-import crowdquilt as cq
 from crowdquilt import plot
-from crowdquilt.plot import loom as looms
 from crowdquilt.plot import style
 from crowdquilt.plot.lives import lives, together
+from crowdquilt.plot.loom import Camera
 from crowdquilt.plot.plan import stadium
 
 
@@ -47,7 +46,7 @@ def test_people_are_drawn_where_they_are_with_z_down(tmp_path: Path, walkers: Pa
 
     x, _, z = crowd.positions(1, 30)[0]
     assert darkness(x, z) > 0.4, "a person"
-    assert darkness(x, z + 3) < 0.1 and darkness(x, 11 - z) < 0.1, "nobody"
+    assert darkness(x, z + 3) < 0.2 and darkness(x, 11 - z) < 0.2, "nobody"
     (_, top), (_, bottom) = axes.transData.transform([(0, 0), (0, 12)])
     assert top > bottom, "seen from above, with x to the right, z points down"
 
@@ -107,7 +106,7 @@ def test_stadium_is_a_capsule_from_above() -> None:
 
 
 def test_the_camera_keeps_its_centre_and_sees_near_things_larger() -> None:
-    camera = looms.Camera(np.array([1.0, 2.0, 3.0]), 10.0)
+    camera = Camera(np.array([1.0, 2.0, 3.0]), 10.0)
     flat, depth = camera.project(np.array([[1.0, 2.0, 3.0]]))
     np.testing.assert_allclose(flat, 0, atol=1e-12)
     np.testing.assert_allclose(depth, 0, atol=1e-12)

@@ -14,7 +14,6 @@ from pathlib import Path
 
 import pytest
 from conftest import crowdquilt
-
 from crowdquilt import server
 
 needs_studio = pytest.mark.skipif(

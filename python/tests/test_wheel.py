@@ -11,7 +11,6 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT
-
 from crowdquilt import server
 
 MATURIN = shutil.which("maturin", path=str(Path(sys.executable).parent))
