@@ -30,9 +30,9 @@ FRESH = {"Cache-Control": "no-store"}
 
 def app(crowd: Path, opened: Callable[[], None] | None = None) -> Starlette:
     """The server's routes; `opened` is called once it listens."""
+    Crowd.load(crowd)  # a bad file is told here, not in the browser
     if not (STUDIO / "index.html").is_file():
         raise CrowdquiltError(f"{STUDIO}: the built studio is not there; `make studio` builds it")
-    Crowd.load(crowd)  # a bad file is told here, not in the browser
 
     async def crowd_file(_request: Request) -> Response:
         data = await run_in_threadpool(crowd.read_bytes)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
@@ -40,10 +40,15 @@ def mix(colour: Any, other: Any, share: float) -> Colour:
     return float(red), float(green), float(blue)
 
 
+# Parts of a kind's name that say how it is done, not what is done.
+MANNERS = {"stand", "walk", "passing", "long", "mirror"}
+
+
 def activity(kind: Kind) -> str:
-    """What people do in a kind, in words: its first label, or its name without numbers and marks of mirroring."""
-    word = kind.labels[0] if kind.labels else re.sub(r"([_-]?\d+|[_-]?mirror(ed)?)+$", "", kind.name)
-    return word.replace("_", " ")
+    """What people do in a kind, in words: its name up to the first part that is a number or says how it is done."""
+    words = kind.name.replace("_", "-").split("-")
+    what = list(takewhile(lambda word: word not in MANNERS and not any(c.isdigit() for c in word), words))
+    return " ".join(what or words)
 
 
 def colours(crowd: Crowd) -> tuple[list[Colour], dict[str, Colour]]:
