@@ -209,9 +209,8 @@ pub fn tile(
     let options = core::Options { method, seed, time_secs: time };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
     let pool = pool.map_err(|e| CrowdquiltError::new_err(format!("threads: {e}")))?;
-    let (found, interrupt) = watched(py, progress, |report| {
-        pool.install(|| core::tile(&scene.0, &patches.0, &options, &mut |p| report(p)))
-    });
+    let (found, interrupt) =
+        watched(py, progress, |report| pool.install(|| core::tile(&scene.0, &patches.0, &options, &mut |p| report(p))));
     let found = outcome(py, found?)?;
     match interrupt {
         None => Ok(found),

@@ -12,9 +12,13 @@ use crate::stage::FragmentUse;
 /// How much deeper than captured the people of a patch may overlap after refinement, metres.
 const ALLOWANCE: f32 = 0.007;
 
-/// True if refinement keeps the people of `kind` as clear of each other as in the capture. O(pairs x frames).
+/// True if refinement keeps the people of `kind` as clear of each other as in the capture, and their feet in reach.
+/// O(pairs x frames).
 pub(super) fn plays_cleanly(kind: &PatchKind) -> bool {
     let played: Vec<Body> = (0..kind.people()).map(|role| play(kind, role)).collect();
+    if played.iter().any(|body| !body.strained.is_empty()) {
+        return false;
+    }
     let (mut globals, mut now, mut then) = (Vec::new(), Vec::new(), Vec::new());
     let last = kind.fragments.iter().map(|f| f.begin as usize + f.motion.len()).max().unwrap_or(0);
     (0..last).all(|frame| {

@@ -223,7 +223,9 @@ impl Bridge {
 
     fn try_close(&mut self, view: View, closing: &Closing, from: Port, to: Port) -> Option<Vec<Piece>> {
         let reach = if closing.roles[1].is_some() { PAIR_REACH } else { SINGLE_REACH };
-        if !ends_near(closing, from, to, reach, MAX_TURN) || !closing.strand.deform(from.at, to.at, &view.library.limits, &mut self.path) {
+        if !ends_near(closing, from, to, reach, MAX_TURN)
+            || !closing.strand.deform(from.at, to.at, &view.library.limits, &mut self.path)
+        {
             return None;
         }
         let pieces = split(view, closing, &self.path, from.tick, to.tick)?;
@@ -247,7 +249,8 @@ impl Bridge {
 
 fn ends_near(closing: &Closing, from: Port, to: Port, reach: f32, turn: f32) -> bool {
     let end = from.at.then(closing.exit);
-    end.position.distance_squared(to.at.position) < reach * reach && wrap_angle(end.heading - to.at.heading).abs() < turn
+    end.position.distance_squared(to.at.position) < reach * reach
+        && wrap_angle(end.heading - to.at.heading).abs() < turn
 }
 
 /// Number of strands that lead from one port to another with little deformation: how easy the bridge will be.

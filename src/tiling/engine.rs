@@ -14,7 +14,7 @@ use super::bridge::Taste;
 use super::domain::Domain;
 use super::enrich::enrich;
 use super::library::Library;
-use super::mend::{bodies, faults, mend};
+use super::mend::{bodies, dissolve, faults, mend};
 use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
 use super::seed::seed_person;
 use super::tracks::Tracks;
@@ -26,11 +26,15 @@ use crate::{Error, Result};
 const SEED_PATIENCE: usize = 4000;
 /// Failed tries in a row after which no further patch of several people is wished for.
 const ENRICH_PATIENCE: usize = 60_000;
+/// The share is aimed at a little higher than wished for: mending may cost a patch or two.
+const ABOVE_WISH: f32 = 1.04;
 /// Largest share of the people's time in patches of several people that early rounds aim at.
 const BUSIEST: f32 = 0.7;
 /// Tries per person in the sweep through time, and how far ahead of it patches are put, ticks.
 const SWEEP_TRIES: usize = 1000;
 const SWEEP_TICKS: i32 = 30;
+/// Rounds after which patches of several people are given up for a fault.
+const GENTLE_ROUNDS: usize = 6;
 /// States expanded to mend a fault.
 const MEND_EXPANSIONS: usize = 300;
 /// Rounds of mending.
@@ -142,7 +146,8 @@ fn engine(
     for part in [3, 2, 1] {
         let people = scene.characters.div_ceil(part);
         seed(&mut tracks, people, taste, &mut clock, &mut rng);
-        let share = (scene.interaction * (scene.characters as f32 / people as f32)).min(BUSIEST);
+        let wish = scene.interaction * ABOVE_WISH;
+        let share = (wish * (scene.characters as f32 / people as f32)).min(BUSIEST);
         enrich_to(&mut tracks, share, taste, &mut clock, &mut rng);
     }
     let (bodies, left) = mend_all(&mut tracks, taste, &mut clock, &mut rng);
@@ -221,8 +226,11 @@ fn mend_all(
         if faults.is_empty() || round > MEND_ROUNDS || !clock.goes_on(|| state(tracks, Phase::Mend)) {
             return (bodies, faults.len());
         }
+        let taste = Taste { expansions: MEND_EXPANSIONS, ..taste };
         for fault in faults {
-            mend(tracks, fault, Taste { expansions: MEND_EXPANSIONS, ..taste }, rng);
+            if round < GENTLE_ROUNDS || !dissolve(tracks, fault, taste, rng) {
+                mend(tracks, fault, taste, rng);
+            }
         }
     }
 }
@@ -230,7 +238,7 @@ fn mend_all(
 fn status(chains: Chains, scene: &Scene, faults: usize) -> Status {
     match faults {
         0 => wishes(chains, scene),
-        _ => Status::Imperfect(format!("{faults} interpenetrations are left")),
+        _ => Status::Imperfect(format!("{faults} faults of the final bodies are left")),
     }
 }
 

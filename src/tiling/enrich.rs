@@ -255,7 +255,10 @@ fn step_aside(tracks: &mut Tracks, parts: &[Part], pieces: &[Piece], undo: &mut 
         return None;
     }
     for window in &mut windows {
-        *window = tracks.widen(*window, BYSTANDER_TICKS)?;
+        if (window.from..window.to).any(|i| tracks.people_of(tracks.tracks[window.track][i]) > 1) {
+            return None;
+        }
+        *window = tracks.widen(*window, BYSTANDER_TICKS);
         tracks.hide_window(*window, undo);
     }
     Some(windows)

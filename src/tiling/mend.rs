@@ -45,8 +45,7 @@ pub(super) fn bodies(chains: Chains) -> Vec<Body> {
         .into_par_iter()
         .map(|t| {
             let uses = segments_of(chains, t);
-            let segments: Vec<_> =
-                uses.iter().map(|(kind, placed)| Segment { kind, placed }).collect();
+            let segments: Vec<_> = uses.iter().map(|(kind, placed)| Segment { kind, placed }).collect();
             refine(&segments, last_frame)
         })
         .collect()
@@ -128,17 +127,47 @@ fn capsules(body: &Body, frame: usize, globals: &mut Vec<(Vec3, Quat)>) -> Vec<C
 pub(super) fn mend(tracks: &mut Tracks, fault: Fault, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
     (0..TRIES).any(|attempt| {
         let track = if rng.random_range(0..2) == 0 { fault.a } else { fault.b };
-        rebridge(tracks, track, fault.tick, WINDOW * (1 + attempt / 2), taste, rng)
+        let ticks = WINDOW * (1 + attempt / 2);
+        near(tracks, track, fault.tick, |people| people == 1)
+            .is_some_and(|at| rebridge(tracks, &[Window { track, from: at, to: at + 1 }], ticks, taste, rng))
     })
 }
 
-/// Rips up the single-person pieces of a track around `tick` and bridges the window another way.
-fn rebridge(tracks: &mut Tracks, track: TrackId, tick: i32, ticks: i32, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
-    let at = tracks.index_at(track, tick).min(tracks.tracks[track].len() - 1);
-    let Some(window) = tracks.widen(Window { track, from: at, to: at + 1 }, ticks) else { return false };
+/// Takes out the patch of several people nearest to a fault that nothing else mends, and bridges its people's tracks;
+/// false if there is none or no way was found.
+pub(super) fn dissolve(tracks: &mut Tracks, fault: Fault, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
+    (0..TRIES).any(|attempt| {
+        let track = if rng.random_range(0..2) == 0 { fault.a } else { fault.b };
+        let Some(at) = near(tracks, track, fault.tick, |people| people > 1) else { return false };
+        let instance = tracks.piece(tracks.tracks[track][at]).instance;
+        let windows: Vec<Window> = (0..tracks.tracks.len())
+            .filter_map(|t| {
+                let from = tracks.tracks[t].iter().position(|&id| tracks.piece(id).instance == instance)?;
+                Some(Window { track: t, from, to: from + 1 })
+            })
+            .collect();
+        rebridge(tracks, &windows, WINDOW * attempt, taste, rng)
+    })
+}
+
+/// Index of the piece at `tick`, or of one of its neighbours, whose patch has the wanted number of people.
+fn near(tracks: &Tracks, track: TrackId, tick: i32, wanted: impl Fn(usize) -> bool) -> Option<usize> {
+    let pieces = &tracks.tracks[track];
+    let at = tracks.index_at(track, tick).min(pieces.len() - 1);
+    let distance = |i: &usize| {
+        let p = tracks.piece(pieces[*i]);
+        (p.begin - tick).max(tick - p.end).max(0)
+    };
+    let neighbours = at.saturating_sub(1)..(at + 2).min(pieces.len());
+    neighbours.filter(|&i| wanted(tracks.people_of(pieces[i]))).min_by_key(distance)
+}
+
+/// Rips up windows of tracks, widened by `ticks`, and bridges them another way.
+fn rebridge(tracks: &mut Tracks, windows: &[Window], ticks: i32, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
     let mut undo = Undo::default();
-    tracks.hide_window(window, &mut undo);
-    if tracks.bridge_window(window, taste, rng, &mut undo).is_some() {
+    let windows: Vec<Window> = windows.iter().map(|&w| tracks.widen(w, ticks)).collect();
+    windows.iter().for_each(|&w| tracks.hide_window(w, &mut undo));
+    if windows.into_iter().all(|w| tracks.bridge_window(w, taste, rng, &mut undo).is_some()) {
         tracks.commit(undo);
         true
     } else {

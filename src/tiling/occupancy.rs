@@ -324,7 +324,11 @@ impl Occupancy {
 pub(super) fn depth(library: &Library, a: &Piece, b: &Piece, tick: i32) -> Option<f32> {
     let body = |p: &Piece| {
         let body = p.bodies.get(usize::try_from(tick - p.first_tick()).ok()?)?;
-        Some((body.position, body.reach, world_discs(body, &library.roles[p.role as usize].footprints[body.frame as usize])))
+        Some((
+            body.position,
+            body.reach,
+            world_discs(body, &library.roles[p.role as usize].footprints[body.frame as usize]),
+        ))
     };
     let ((at, reach, own), (other_at, other_reach, others)) = (body(a)?, body(b)?);
     if at.distance(other_at) >= reach + other_reach {

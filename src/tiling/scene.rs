@@ -55,14 +55,14 @@ fn default_limits() -> Spanned<String> {
 }
 
 impl Scene {
-    /// The demo's scene: 12 x 12 m, 20 s, 72 people, 28 % of their time in patches of two or more.
+    /// The demo's scene: 12 x 12 m, 20 s, 72 people, 26 % of their time in patches of two or more.
     pub fn demo() -> Self {
         Self {
             region: Polygon::rectangle(Vec2::ZERO, Vec2::splat(12.0)),
             obstacles: vec![],
             duration_secs: 20.0,
             characters: 72,
-            interaction: 0.28,
+            interaction: 0.26,
             limits: Limits::TIGHT,
         }
     }

@@ -173,13 +173,10 @@ impl<'a> Tracks<'a> {
     }
 
     /// The window made wider by at least `ticks` on both sides, as far as time goes and up to the next patch of several
-    /// people; `None` if one is inside already.
-    pub fn widen(&self, window: Window, ticks: i32) -> Option<Window> {
+    /// people.
+    pub fn widen(&self, window: Window, ticks: i32) -> Window {
         let Window { track, mut from, mut to } = window;
         let single = |i: usize| self.people_of(self.tracks[track][i]) == 1;
-        if !(from..to).all(single) {
-            return None;
-        }
         let (begin, end) = (self.port(track, from).tick - ticks, self.port(track, to).tick + ticks);
         while from > 0 && self.port(track, from).tick > begin && single(from - 1) {
             from -= 1;
@@ -187,7 +184,7 @@ impl<'a> Tracks<'a> {
         while to < self.tracks[track].len() && self.port(track, to).tick < end && single(to) {
             to += 1;
         }
-        Some(Window { track, from, to })
+        Window { track, from, to }
     }
 
     /// Takes the pieces of a window out.

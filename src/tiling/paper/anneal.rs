@@ -83,11 +83,7 @@ fn random_placement(tiling: &Patchwork, preference: &Preference, rng: &mut ChaCh
     let last = roles.map(|r| r.begin + r.ticks).max().expect("a kind has people");
     let place = Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
     let heading = rng.random_range(-std::f32::consts::PI..std::f32::consts::PI);
-    Placement {
-        kind,
-        world_from_patch: Ground::new(place, heading),
-        clock: rng.random_range(1 - last..domain.horizon),
-    }
+    Placement { kind, world_from_patch: Ground::new(place, heading), clock: rng.random_range(1 - last..domain.horizon) }
 }
 
 #[cfg(test)]

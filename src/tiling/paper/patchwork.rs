@@ -184,14 +184,7 @@ impl<'a> Patchwork<'a> {
     }
 
     /// The nearest dangling that a new port can be stitched to, and where they meet.
-    fn partner(
-        &self,
-        role: u32,
-        side: u32,
-        own: &Port,
-        reach: &Reach,
-        taken: &[Stitch],
-    ) -> Option<(PortId, Port)> {
+    fn partner(&self, role: u32, side: u32, own: &Port, reach: &Reach, taken: &[Stitch]) -> Option<(PortId, Port)> {
         let mut best: Option<(f32, PortId, Port)> = None;
         self.ports.near(1 - side, own, reach, |old| {
             let theirs = self.port(old);

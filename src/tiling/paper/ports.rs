@@ -51,7 +51,8 @@ impl Reach {
         let place = a.at.position.distance_squared(b.at.position) / (self.place * self.place);
         let heading = wrap_angle(a.at.heading - b.at.heading) / self.heading;
         let ticks = (a.tick - b.tick) as f32 / self.ticks;
-        (place <= 1.0 && heading.abs() <= 1.0 && ticks.abs() <= 1.0).then_some(place + heading * heading + ticks * ticks)
+        (place <= 1.0 && heading.abs() <= 1.0 && ticks.abs() <= 1.0)
+            .then_some(place + heading * heading + ticks * ticks)
     }
 }
 
