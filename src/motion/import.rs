@@ -82,7 +82,7 @@ fn restore_thorax(clip: &mut Clip) -> Result<()> {
 /// Units that files are commonly in, as metres: metres, centimetres, millimetres, inches, feet, CMU's ASF/AMC unit.
 const UNITS: [f32; 6] = [1.0, 0.01, 0.001, 0.0254, 0.3048, 0.0254 / 0.45];
 
-/// Metres per unit of a clip, guessed from the standing height: the [common unit](UNITS) that makes the person
+/// Metres per unit of a clip, guessed from the standing height: the common unit that makes the person
 /// closest to 1.72 m if one makes them 1.3 to 2.2 m tall, else what makes them 1.72 m exactly.
 ///
 /// # Errors

@@ -1,6 +1,6 @@
 //! Retargeting: a capture on its own rig becomes motion on the canonical skeleton.
 //!
-//! 1. [`Rig`](rig::Rig): joints by name, bones by direction, so that limbs point the same way in space.
+//! 1. `Rig`: joints by name, bones by direction, so that limbs point the same way in space.
 //! 2. Root: the point between the hip joints, scaled by the ratio of the legs' lengths, so that steps fit the legs;
 //!    people of one take share one scale on the ground, so that they still meet.
 //! 3. Floor: shifted so that the planted ball of the foot is 0.02 m above it.
