@@ -38,7 +38,11 @@ impl System {
 
     /// Factors the normal equations; `None` if they leave an unknown free. O(size x band^2).
     pub fn pin(&self, pinned: Vec<bool>) -> Option<Pinned> {
-        let pairs = || self.rows.iter().flat_map(|row| row.terms.iter().flat_map(move |a| row.terms.iter().map(move |b| (row, a, b))));
+        let pairs = || {
+            self.rows
+                .iter()
+                .flat_map(|row| row.terms.iter().flat_map(move |a| row.terms.iter().map(move |b| (row, a, b))))
+        };
         let free = |i: usize| !pinned[i];
         let width = pairs().map(|(_, a, b)| a.0.abs_diff(b.0)).max().unwrap_or(0);
         let mut band = Band::new(self.size, width);
