@@ -97,10 +97,8 @@ fn solve_dense(mut a: Vec<Vec<Complex>>, mut b: Vec<Complex>) -> Vec<Complex> {
         for i in k + 1..n {
             let factor = a[i][k] * inverse(a[k][k]);
             if factor.abs() > 0.0 {
-                for j in k..n {
-                    let below = factor * a[k][j];
-                    a[i][j] -= below;
-                }
+                let (above, below) = a.split_at_mut(i);
+                above[k][k..].iter().zip(&mut below[0][k..]).for_each(|(&a, b)| *b -= factor * a);
                 let below = factor * b[k];
                 b[i] -= below;
             }
@@ -288,10 +286,10 @@ fn handles_as_captured_leave_the_web_as_it_is() {
     let kind = gathering(true);
     let out = Web::new(&kind).deform(&ports(&kind), &Limits::TIGHT).unwrap();
     for (f, (path, ticks)) in kind.fragments.iter().zip(out.paths.iter().zip(&out.ticks)) {
-        for i in 0..path.len() {
+        for (i, tick) in ticks.iter().enumerate() {
             assert!(path.points[i].distance(f.motion.path.points[i]) < 1e-5);
             assert!((path.headings[i] - f.motion.path.headings[i]).abs() < 1e-5);
-            assert!((ticks[i] - (f.begin as usize + i) as f32).abs() < 1e-4);
+            assert!((tick - (f.begin as usize + i) as f32).abs() < 1e-4);
         }
     }
 }
