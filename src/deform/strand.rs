@@ -16,7 +16,7 @@ use crate::geom::{Ground, complex, wrap_angle};
 use crate::motion::MotionPath;
 
 /// Below this speed a body counts as standing (m per frame at 30 fps).
-const STANDING_EDGE: f32 = 0.1 / crate::motion::FPS;
+pub(super) const STANDING_EDGE: f32 = 0.1 / crate::motion::FPS;
 /// From this speed on a path bends freely.
 const WALKING_EDGE: f32 = 0.5 / crate::motion::FPS;
 /// Compliance of a standing frame relative to a walking one.
@@ -163,7 +163,7 @@ impl Strand {
     }
 }
 
-fn compliance(edge: f32) -> f32 {
+pub(super) fn compliance(edge: f32) -> f32 {
     let t = ((edge - STANDING_EDGE) / (WALKING_EDGE - STANDING_EDGE)).clamp(0.0, 1.0);
     STANDING_COMPLIANCE + (1.0 - STANDING_COMPLIANCE) * t * t * (3.0 - 2.0 * t)
 }

@@ -132,10 +132,12 @@ impl Bridge {
         self.push(Node { at: from, cost: 0.0, parent: 0, role: u32::MAX, piece: None }, 0.0);
         let mut expansions = 0;
         while let Some(Entry { node, .. }) = self.heap.pop() {
-            if !self.place(view, node, goal) {
+            let at = self.nodes[node as usize].at;
+            // A state counts as seen once a free patch has led to it: the first that would may be blocked.
+            if self.seen.contains(&key(&at)) || !self.place(view, node, goal) {
                 continue;
             }
-            let at = self.nodes[node as usize].at;
+            self.seen.insert(key(&at));
             let done = match goal {
                 Goal::Port(_) => false,
                 Goal::Until(tick) => at.tick >= tick,
@@ -191,7 +193,7 @@ impl Bridge {
         for step in &moves[from.group as usize] {
             let at = Port { at: from.at.then(step.to), tick: from.tick + direction * step.ticks, group: step.group };
             let inside = at.tick < 0 || at.tick > view.domain.horizon || view.domain.holds(at.at.position, WALL_ROOM);
-            if !inside || !self.seen.insert(key(&at)) {
+            if !inside || self.seen.contains(&key(&at)) {
                 continue;
             }
             let cost = cost + step_cost(step, taste) * rng.random_range(0.85..1.2);

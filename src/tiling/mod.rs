@@ -19,6 +19,8 @@ mod tracks;
 #[cfg(test)]
 #[path = "../../tests/common/mod.rs"]
 mod common;
+#[cfg(test)]
+mod oracle_tests;
 
 pub use engine::tile;
 pub use outcome::{Method, Options, Outcome, Phase, Progress, Status};

@@ -7,8 +7,8 @@
 //! Departures, none of which changes what is searched: adjacent patches deform by closed-form strands in place of one
 //! joint linear system (the stitched port is the midpoint of the two, which is where the joint system of two equal
 //! strings would put it); a patch of several people keeps its interaction rigid and bends its legs only; it also keeps
-//! its time, while patches of one person are rescaled to whole ticks. Where final bodies interpenetrate after all, one
-//! of the two patches is removed and Algorithm 2 runs again.
+//! its time, while patches of one person are rescaled to whole ticks. Where final bodies are at fault after all
+//! (they interpenetrate, or move faster than captured), a patch is removed and Algorithm 2 runs again.
 
 mod anneal;
 mod patchwork;
@@ -33,7 +33,7 @@ use crate::refine::Body;
 
 pub(super) use anneal::energy;
 
-/// Rounds of removing patches whose final bodies interpenetrate.
+/// Rounds of removing patches whose final bodies are at fault.
 const MEND_ROUNDS: usize = 30;
 
 /// Tiles as published. O(samples + danglings x candidates x jitters), each with a few frames' work.
@@ -62,7 +62,7 @@ pub(super) fn tile(
     Outcome { crowd, status, danglings, interpenetrations: left, solve_secs: clock.secs() }
 }
 
-/// Tests the final bodies; where two interpenetrate, removes a patch and closes the gap anew.
+/// Tests the final bodies; where there is a fault, removes a patch and closes the gap anew.
 fn mend(
     tiling: &mut Patchwork,
     search: &mut search::Search,
@@ -90,8 +90,8 @@ fn mend(
 fn status(danglings: usize, faults: usize, chains: Chains, scene: &Scene) -> Status {
     match (danglings, faults) {
         (0, 0) => wishes(chains, scene),
-        (0, _) => Status::Imperfect(format!("{faults} interpenetrations are left")),
+        (0, _) => Status::Imperfect(format!("{faults} faults of the final bodies are left")),
         (_, 0) => Status::Imperfect(format!("{danglings} entries and exits are left dangling")),
-        _ => Status::Imperfect(format!("{danglings} danglings and {faults} interpenetrations are left")),
+        _ => Status::Imperfect(format!("{danglings} danglings and {faults} faults of the final bodies are left")),
     }
 }
