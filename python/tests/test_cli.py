@@ -10,9 +10,10 @@ import sys
 import time
 from pathlib import Path
 
-import crowdquilt as cq
-import crowdfile
 import pytest
+
+import crowdfile
+import crowdquilt as cq
 from conftest import crowdquilt
 
 COMMANDS = ["samples", "inspect", "patches", "tile", "check", "export", "plot", "view", "bench", "demo"]

@@ -7,8 +7,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-import crowdquilt as cq
 import pytest
+
+import crowdquilt as cq
 from conftest import ROOT, crowdquilt
 
 
