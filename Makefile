@@ -46,7 +46,7 @@ $(VENV_MADE):
 
 $(EXTENSION): $(VENV_MADE) $(RUST_SOURCES) python/pyproject.toml
 	@echo "== Rust core and Python package"
-	$(BIN)/maturin develop --quiet --release --extras dev --manifest-path python/Cargo.toml
+	PIP_QUIET=1 $(BIN)/maturin develop --quiet --release --extras dev --manifest-path python/Cargo.toml
 	touch $@
 
 $(NODE_MODULES): studio/package-lock.json

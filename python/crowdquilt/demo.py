@@ -9,7 +9,7 @@ from time import perf_counter
 from typing import Any
 
 from crowdquilt import check, export, patch, report, samples
-from crowdquilt._core import Outcome, PatchSet, Scene
+from crowdquilt._core import Crowd, Outcome, PatchSet, Scene
 from crowdquilt.outputs import whole_folder
 
 Solve = Callable[[Scene, PatchSet], Outcome]
@@ -32,8 +32,9 @@ def make(out: Path, scene: Scene, solve: Solve, say: Say, seed: int = 1) -> None
         together = sum(kind.people > 1 for kind in patches.kinds)
         step.done("patches", f"{len(patches)} kinds, {together} of two or more people")
         outcome = solve(scene, patches)
-        crowd = outcome.crowd
-        crowd.save(part / "crowd.crowd")
+        outcome.crowd.save(part / "crowd.crowd")
+        # All that follows is about the file, whose numbers are rounded.
+        crowd = Crowd.load(part / "crowd.crowd")
         step.done("crowd", f"{len(crowd)} people through {len(crowd.instances)} patches")
         result = check.check(crowd)
         report.save(report.build(crowd, result, outcome), part / "report.json")

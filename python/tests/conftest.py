@@ -7,9 +7,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import crowdfile
 import crowdquilt as cq
-import pytest
 
 ROOT = Path(__file__).parents[2]
 SCENE = "region = [[0, 0], [7, 0], [7, 7], [0, 7]]\nduration_secs = 5.0\ncharacters = 8\ninteraction = 0.1\n"

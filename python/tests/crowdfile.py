@@ -187,14 +187,16 @@ def crowd(
     return container(b"CQCROWD\0", header, arrays)
 
 
-def walkers(count: int = 3, last_frame: int = 90, side: float = 12.0) -> bytes:
+def walkers(count: int = 3, last_frame: int = 90, side: float = 12.0, apart: float = 1.0) -> bytes:
     """`count` people who walk abreast along +z, each by three patches that meet end to end."""
     instances, people = [], []
     for person in range(count):
         uses = []
         for step in range(3):
             z = 1.0 + 1.2 * step + np.linspace(0, 1.2, 31)
-            uses.append(Use(len(instances), 0, 30 * step, np.stack([np.full(31, 1.0 + person), z], 1), np.zeros(31)))
+            uses.append(
+                Use(len(instances), 0, 30 * step, np.stack([np.full(31, 1.0 + apart * person), z], 1), np.zeros(31))
+            )
             instances.append(0)
         people.append(uses)
     return crowd([WALK], instances, people, last_frame, side)

@@ -6,10 +6,11 @@ import ast
 import inspect
 from pathlib import Path
 
-import crowdfile
-import crowdquilt as cq
 import numpy as np
 import pytest
+
+import crowdfile
+import crowdquilt as cq
 from crowdquilt import _core
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
+
 import crowdfile
 import crowdquilt as cq
-import pytest
 from conftest import SCENE, crowdquilt
 
 BVH = """HIERARCHY

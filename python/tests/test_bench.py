@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import fields
 
-import crowdquilt as cq
 import pytest
+
+import crowdquilt as cq
 from crowdquilt import bench
 
 

@@ -10,8 +10,10 @@ import sys
 import time
 from pathlib import Path
 
-import crowdquilt as cq
 import pytest
+
+import crowdfile
+import crowdquilt as cq
 from conftest import crowdquilt
 
 COMMANDS = ["samples", "inspect", "patches", "tile", "check", "export", "plot", "view", "bench", "demo"]
@@ -57,10 +59,14 @@ def test_samples_patches_tile_check_export_in_a_row(tmp_path: Path, scene: Path)
     assert inspected["joints"] == 22 and inspected["fps"] == pytest.approx(30, abs=0.01)
 
 
-def test_check_fails_with_1_on_a_crowd_that_breaks_the_contract(walkers: Path) -> None:
-    done = crowdquilt("check", walkers)
+def test_check_is_0_or_1_as_the_contract_holds_or_not(tmp_path: Path, walkers: Path) -> None:
+    assert crowdquilt("check", walkers).returncode == 0
+    close = tmp_path / "close.crowd"
+    close.write_bytes(crowdfile.walkers(apart=0.2))
+    done = crowdquilt("check", close)
     assert done.returncode == 1, done.stdout
-    assert "rows fail" in done.stdout
+    assert "1 of" in done.stdout and "rows fail" in done.stdout
+    assert "✗  bodies of different patches overlap" in done.stdout
 
 
 def test_no_perfect_tiling_in_the_given_time_is_3_with_the_best_one_saved(tmp_path: Path, patches: Path) -> None:

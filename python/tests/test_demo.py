@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import crowdquilt as cq
 import pytest
+
+import crowdquilt as cq
 from conftest import crowdquilt
 from crowdquilt import report
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 from crowdquilt.outputs import whole_file, whole_folder
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import crowdfile
-import crowdquilt as cq
 import matplotlib.image
 import numpy as np
 import pytest
+
+import crowdfile
+import crowdquilt as cq
 from conftest import crowdquilt
 from crowdquilt import plot
 from crowdquilt.plot import style

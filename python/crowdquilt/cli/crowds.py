@@ -68,7 +68,8 @@ def tile(
     out.parent.mkdir(parents=True, exist_ok=True)
     outcome.crowd.save(out)
     if report_to:
-        report.save(report.build(outcome.crowd, check.check(outcome.crowd), outcome), report_to)
+        written = Crowd.load(out)  # the report is about the file, whose numbers are rounded
+        report.save(report.build(written, check.check(written), outcome), report_to)
     tell(outcome)
     console.print(f"{out}: written")
     if outcome.status == "imperfect":
