@@ -30,7 +30,8 @@ impl Default for CutOptions {
     }
 }
 
-/// Cuts the patches of all take files, in their order, into one set.
+/// Cuts the patches of all take files, in their order, into one set. Patches in which somebody holds a prop are left
+/// out: sets and crowds do not carry props yet, and hands around nothing look wrong.
 ///
 /// # Errors
 /// A take file or capture is bad (names the file and the line or field); a role outside its capture or without a
@@ -40,7 +41,7 @@ pub fn cut(takes: &[PathBuf], options: &CutOptions) -> Result<PatchSet> {
     for path in takes {
         let take = TakeFile::load(path)?;
         let motions = load_take(path, &take, options)?;
-        for patch in &take.patches {
+        for patch in take.patches.iter().filter(|p| !holds_prop(&take, p)) {
             let cutter = Cutter { take: &take, motions: &motions, patch, options };
             let kind = cutter.kind(&mut set.groups).map_err(|e| e.in_file(path))?;
             if set.kinds.iter().any(|k| k.name == kind.name) {
@@ -57,6 +58,12 @@ pub fn cut(takes: &[PathBuf], options: &CutOptions) -> Result<PatchSet> {
         Some(problem) => Err(problem),
         None => Ok(set),
     }
+}
+
+fn holds_prop(take: &TakeFile, patch: &TakePatch) -> bool {
+    let holds = take.props.iter().flat_map(|prop| &prop.held);
+    let overlap = |role: &TakeRole, begin: f32, end: f32| role.begin < end && begin < role.end;
+    holds.into_iter().any(|h| patch.roles.iter().any(|r| r.person == h.person && overlap(r, h.begin, h.end)))
 }
 
 /// Cuts all take files (`*.take.json`) of a folder, sorted by name; captures are looked up in `captures` if given.

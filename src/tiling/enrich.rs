@@ -206,7 +206,14 @@ fn perform(tracks: &mut Tracks, parts: &[Part], taste: Taste, rng: &mut ChaCha8R
         .map(|p| Piece::rigid(tracks.library, tracks.domain, p.role, instance, p.entry.at, p.entry.tick))
         .collect();
     let bystanders = step_aside(tracks, parts, &pieces, undo)?;
-    let placed: Vec<PieceId> = pieces.into_iter().map(|piece| tracks.add(piece, undo)).collect();
+    let mut placed = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        // Asked again now that the first of them are in: a cell holds so many people and no more.
+        if !tracks.is_free(&piece) {
+            return None;
+        }
+        placed.push(tracks.add(piece, undo));
+    }
     let futures = futures(tracks, parts);
     let mut ways = Vec::with_capacity(parts.len());
     for (i, part) in parts.iter().enumerate() {
