@@ -10,7 +10,7 @@ use crowdquilt::{check, patch, samples};
 fn main() -> crowdquilt::Result<()> {
     let args: Vec<String> = std::env::args().collect();
     let seed = args.get(1).and_then(|s| s.parse().ok()).unwrap_or(1);
-    let out = Path::new("target/pipeline");
+    let out = Path::new("out/pipeline");
     // 1. Generate sample captures, unless there are others.
     let takes = args.get(2).map_or_else(|| out.join("captures"), Into::into);
     if args.len() < 3 {
@@ -31,5 +31,6 @@ fn main() -> crowdquilt::Result<()> {
     println!("{:?}", check::summary(&outcome.crowd));
     println!("{}", check::check(&outcome.crowd));
     // 5. Save it.
-    outcome.crowd.save(&out.join("pipeline.crowd"))
+    std::fs::create_dir_all(out).map_err(|e| crowdquilt::Error::io(out, e))?;
+    outcome.crowd.save(&out.join("crowd.crowd"))
 }

@@ -75,6 +75,8 @@ def serve(crowd: Path, port: int, open_browser: bool, say: Callable[[str], None]
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         listener.bind((HOST, port))
+        # Whoever follows the address as soon as it is told waits instead of being refused.
+        listener.listen()
     except OSError as error:
         listener.close()
         raise CrowdquiltError(f"port {port}: {error.strerror}") from None

@@ -51,6 +51,5 @@ def test_the_rust_example_makes_the_crowd_of_the_python_example(example: Path, t
     program = ROOT / "target" / "release" / "examples" / "pipeline"
     if not program.exists():
         pytest.skip("the Rust example is not built: run `cargo test --release` first")
-    (tmp_path / "out").mkdir()
-    subprocess.run([program, example / "captures"], cwd=tmp_path, capture_output=True, timeout=300, check=True)
-    assert digest(tmp_path / "out" / "pipeline.crowd") == digest(example / "crowd.crowd")
+    subprocess.run([program, "1", example / "captures"], cwd=tmp_path, capture_output=True, timeout=300, check=True)
+    assert digest(tmp_path / "out" / "pipeline" / "crowd.crowd") == digest(example / "crowd.crowd")
