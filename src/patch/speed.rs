@@ -6,7 +6,7 @@ use super::PatchSet;
 use crate::motion::{JOINT_COUNT, Motion};
 
 /// A joint that hardly moves in the captures may still turn this much, radians per frame.
-const SLOWEST: f32 = 0.05;
+const SLOWEST: f32 = 0.5 / crate::motion::FPS;
 
 /// Angle between two rotations, radians.
 pub(crate) fn turn_between(a: Quat, b: Quat) -> f32 {

@@ -28,6 +28,27 @@ const MERGE_FRAMES: i32 = 2;
 struct Lock {
     begin: i32,
     end: i32,
+    /// Frames that say where the foot stands: those with others where there are any, so that what people do together
+    /// stays as captured.
+    anchor: (i32, i32),
+    together: bool,
+}
+
+impl Lock {
+    fn new(begin: i32, end: i32, together: bool) -> Self {
+        Self { begin, end, anchor: (begin, end), together }
+    }
+
+    /// Goes on with `next`.
+    fn extend(&mut self, next: Self) {
+        self.end = self.end.max(next.end);
+        if next.together && !self.together {
+            self.anchor = next.anchor;
+        } else if next.together == self.together {
+            self.anchor.1 = self.anchor.1.max(next.anchor.1);
+        }
+        self.together |= next.together;
+    }
 }
 
 /// Locks planted feet.
@@ -66,13 +87,13 @@ fn locks(segments: &[Segment], foot: Foot, begin: i32, frames: i32) -> Vec<Lock>
     for s in segments {
         for p in s.motion().plants.iter().filter(|p| p.foot == foot) {
             let at = |source: u32| s.placed.begin as f32 + source as f32 / s.rate() - begin as f32;
-            let lock = Lock { begin: at(p.begin).ceil() as i32, end: at(p.end).floor() as i32 };
-            let lock = Lock { begin: lock.begin.max(0), end: lock.end.min(frames - 1) };
+            let (first, last) = (at(p.begin).ceil() as i32, at(p.end).floor() as i32);
+            let lock = Lock::new(first.max(0), last.min(frames - 1), s.kind.people() > 1);
             if lock.end < lock.begin {
                 continue;
             }
             match locks.last_mut() {
-                Some(last) if lock.begin <= last.end + MERGE_FRAMES => last.end = last.end.max(lock.end),
+                Some(last) if lock.begin <= last.end + MERGE_FRAMES => last.extend(lock),
                 _ => locks.push(lock),
             }
         }
@@ -95,7 +116,8 @@ fn corrections(balls: &[Vec3], locks: &[Lock]) -> Vec<Vec3> {
     let mut offsets = vec![Vec3::ZERO; balls.len()];
     for lock in locks {
         let range = lock.begin as usize..=lock.end as usize;
-        let place = balls[range.clone()].iter().sum::<Vec3>() / range.clone().count() as f32;
+        let anchor = &balls[lock.anchor.0 as usize..=lock.anchor.1 as usize];
+        let place = anchor.iter().sum::<Vec3>() / anchor.len() as f32;
         for f in range {
             offsets[f] = place - balls[f];
         }
@@ -179,7 +201,7 @@ mod tests {
     #[test]
     fn corrections_hold_the_ball_still_and_are_smooth_between() {
         let balls: Vec<Vec3> = (0..60).map(|f| Vec3::new(0.0, 0.02, f as f32 * 0.01)).collect();
-        let locks = [Lock { begin: 5, end: 20 }, Lock { begin: 35, end: 50 }];
+        let locks = [Lock::new(5, 20, false), Lock::new(35, 50, false)];
         let offsets = corrections(&balls, &locks);
         for lock in locks {
             let place = balls[lock.begin as usize] + offsets[lock.begin as usize];

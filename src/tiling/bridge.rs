@@ -269,7 +269,7 @@ fn split(view: View, closing: &Closing, path: &MotionPath, begin: i32, end: i32)
     let role = |r: u32| &view.library.roles[r as usize];
     let first = closing.roles[0].expect("a closing has a first role");
     let piece = |r: u32, path: MotionPath, begin: i32, end: i32| {
-        let hurried = role(r).is_hurried(&path, end - begin, view.library.fastest[0]);
+        let hurried = view.library.is_hurried(r, &path, end - begin);
         (!hurried).then(|| Piece::along(view.library, view.domain, r, NO_INSTANCE, path, begin, end))
     };
     let Some(second) = closing.roles[1] else {

@@ -13,7 +13,7 @@ use crate::patch::{PatchSet, fastest_turns, turn_between};
 const MARGIN: f32 = 0.02;
 /// Warped in time, a joint may turn this much faster than the captures' fastest.
 const RUSH: f32 = 1.1;
-/// Bent, hips may turn this much faster; blending at stitches takes up the rest of what is let pass.
+/// Deformed, hips may go and turn this much faster; blending at stitches takes up the rest of what is let pass.
 const HURRY: f32 = 1.05;
 /// Longest strand of two single-person kinds that closes a gap, in frames.
 const MAX_STRAND_FRAMES: usize = 110;
@@ -95,6 +95,8 @@ pub(super) struct Library<'a> {
     pub closings: Vec<Vec<Closing>>,
     /// Fastest turn of each joint in the captures, radians per frame.
     pub fastest: [f32; JOINT_COUNT],
+    /// Longest way of the hips over the ground in the captures, metres per frame.
+    pub fastest_step: f32,
     /// Largest reach of any footprint.
     pub max_reach: f32,
 }
@@ -132,9 +134,26 @@ impl<'a> Library<'a> {
             backward,
             closings,
             fastest,
+            fastest_step: roles.iter().map(|r| longest_step(&r.path)).fold(0.0, f32::max),
             max_reach: roles.iter().flat_map(|r| &r.reach).copied().fold(0.0, f32::max),
             roles,
         }
+    }
+
+    /// True if a role laid along `path` over `ticks` makes the hips go or turn faster than anywhere in the captures.
+    pub fn is_hurried(&self, role: u32, path: &MotionPath, ticks: i32) -> bool {
+        let role = &self.roles[role as usize];
+        let rate = role.ticks as f32 / ticks as f32;
+        if longest_step(path) * rate > HURRY * self.fastest_step {
+            return true;
+        }
+        let bends = path.headings.windows(2).zip(role.path.headings.windows(2));
+        let bends = bends.map(|(now, then)| ((now[1] - now[0]) - (then[1] - then[0])).abs());
+        // Where nothing bends the range of ticks has seen to it.
+        role.hips_turns
+            .iter()
+            .zip(bends)
+            .any(|(own, bend)| bend > 1e-4 && (own + bend) * rate > HURRY * self.fastest[0])
     }
 
     /// The roles of a kind.
@@ -171,15 +190,8 @@ fn prepare(set: &PatchSet, kind: u32, role: u32, limits: &Limits, fastest: &[f32
     }
 }
 
-impl Role {
-    /// True if bending along `path` over `ticks` makes the hips turn faster than `fastest`, radians per frame.
-    pub fn is_hurried(&self, path: &MotionPath, ticks: i32, fastest: f32) -> bool {
-        let rate = self.ticks as f32 / ticks as f32;
-        let bends = path.headings.windows(2).zip(self.path.headings.windows(2));
-        let bends = bends.map(|(now, then)| ((now[1] - now[0]) - (then[1] - then[0])).abs());
-        // Where nothing bends the range of ticks has seen to it.
-        self.hips_turns.iter().zip(bends).any(|(own, bend)| bend > 1e-4 && (own + bend) * rate > HURRY * fastest)
-    }
+fn longest_step(path: &MotionPath) -> f32 {
+    path.points.windows(2).map(|w| w[0].distance(w[1])).fold(0.0, f32::max)
 }
 
 fn hips_turns(motion: &Motion) -> Vec<f32> {

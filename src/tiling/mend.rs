@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::bake::{Chains, segments_of};
 use super::bridge::Taste;
+use super::library::Library;
 use super::tracks::{TrackId, Tracks, Undo, Window};
 use crate::geom::Capsule;
 use crate::motion::{JOINT_COUNT, body_capsules};
@@ -63,18 +64,20 @@ pub(super) fn faults(chains: Chains, bodies: &[Body]) -> Vec<Fault> {
         open = now;
     }
     let alone = bodies.par_iter().enumerate().map(|(t, body)| {
-        let frame = body.strained.first().copied().into_iter().chain(first_rushed(body, &chains.library.fastest)).min();
+        let frame = body.strained.first().copied().into_iter().chain(first_rushed(body, chains.library)).min();
         frame.map(|f| Fault { a: t, b: t, tick: body.begin as i32 + f as i32 })
     });
     faults.extend(alone.collect::<Vec<_>>().into_iter().flatten());
     faults
 }
 
-/// The first frame on which a joint turns faster than the captures' fastest, with some allowance.
-fn first_rushed(body: &Body, fastest: &[f32; JOINT_COUNT]) -> Option<usize> {
+/// The first frame on which a joint turns, or the hips move, faster than in the captures, with some allowance.
+fn first_rushed(body: &Body, library: &Library) -> Option<usize> {
+    let longest_step = RUSH * library.fastest_step + library.limits.stretch;
     (1..body.root.len()).find(|&f| {
         let (before, now) = (body.pose(f - 1), body.pose(f));
-        (0..JOINT_COUNT).any(|j| turn_between(before[j], now[j]) > RUSH * fastest[j])
+        body.root[f].distance(body.root[f - 1]) > longest_step
+            || (0..JOINT_COUNT).any(|j| turn_between(before[j], now[j]) > RUSH * library.fastest[j])
     })
 }
 

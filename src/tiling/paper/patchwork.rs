@@ -310,7 +310,7 @@ impl<'a> Patchwork<'a> {
         let rest = placement.world_from_patch.then(role.entry);
         let grounds = [ends[0].at, ends[1].at];
         let path = self.shapes[role_id as usize].deform(role, rest, grounds, &self.library.limits)?;
-        if role.is_hurried(&path, end - begin, self.library.fastest[0]) {
+        if self.library.is_hurried(role_id, &path, end - begin) {
             return None;
         }
         Some(Piece::along(self.library, self.domain, role_id, instance, path, begin, end))
