@@ -71,7 +71,7 @@ def test_check_is_0_or_1_as_the_contract_holds_or_not(tmp_path: Path, walkers: P
 
 def test_no_perfect_tiling_in_the_given_time_is_3_with_the_best_one_saved(tmp_path: Path, patches: Path) -> None:
     out = tmp_path / "crammed.crowd"
-    done = crowdquilt("tile", patches, "-o", out, "--method", "paper", "--characters", 70, "--time", 1)
+    done = crowdquilt("tile", patches, "-o", out, "--method", "paper", "--characters", 300, "--time", 1)
     assert done.returncode == 3, done.stdout + done.stderr
     assert "not perfect" in done.stdout
     assert int(re.search(r"(\d+) danglings", done.stdout)[1]) > 0
