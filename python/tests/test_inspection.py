@@ -59,7 +59,8 @@ def test_a_jump_later_on_is_found(tmp_path: Path, text: str) -> None:
 
 def test_a_lost_thorax_is_found(tmp_path: Path) -> None:
     joints = "\tJOINT Neck\n\t{\n\t\tOFFSET 0 0 0\n\t\tCHANNELS 3 Zrotation Xrotation Yrotation\n"
-    head = "HIERARCHY\nROOT Hips\n{\n\tOFFSET 0 0 0\n\tCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
+    six = "Xposition Yposition Zposition Zrotation Xrotation Yrotation"
+    head = f"HIERARCHY\nROOT Hips\n{{\n\tOFFSET 0 0 0\n\tCHANNELS 6 {six}\n"
     tail = "\t\tEnd Site\n\t\t{\n\t\t\tOFFSET 0 1.7 0\n\t\t}\n\t}\n}\n"
     motion = "MOTION\nFrames: 2\nFrame Time: 0.033333\n" + "0 0 0 0 0 0 0 0 0\n" * 2
     told = found(tmp_path, head + joints + tail + motion)
