@@ -128,7 +128,8 @@ def test_ctrl_c_keeps_the_best_tiling(tmp_path: Path, patches: Path) -> None:
 
 def test_keyboard_interrupt_in_python_carries_the_best_tiling(patches: Path) -> None:
     program = f"""
-import _thread, crowdquilt as cq
+import _thread, signal, crowdquilt as cq
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
 def told(p):
     _thread.interrupt_main()
 try:
