@@ -30,6 +30,7 @@ STUDIO_SOURCES := $(shell find studio/src studio/public -type f 2>/dev/null) \
 	$(wildcard studio/index.html studio/*.json studio/*.ts)
 LINTED := python/crowdquilt python/tests examples tests/clients
 
+.NOTPARALLEL:
 .PHONY: help demo view bench setup studio test test-rust test-python test-studio test-browser lint fmt clean
 
 help:
@@ -99,7 +100,7 @@ test-rust:
 	@echo "== Rust tests"
 	cargo test --release --quiet
 
-test-python: setup $(CLIENTS) test-rust
+test-python: setup $(CLIENTS)
 	@echo "== Python tests"
 	$(BIN)/python -m pytest -q -c python/pyproject.toml python/tests tests/clients
 

@@ -11,7 +11,7 @@ from statistics import median
 from rich.table import Table
 
 from crowdquilt import check, patch, samples
-from crowdquilt._core import Scene, tile
+from crowdquilt._core import PatchSet, Scene, tile
 
 PAPER = "Hyun et al. 2013, figure 7: Static, 907 patches, 2.93 GHz Core i7"
 Say = Callable[[str], None]
@@ -41,41 +41,37 @@ def tiling(seeds: int, say: Say) -> list[Row]:
     with tempfile.TemporaryDirectory() as folder:
         samples.write(Path(folder), 1)
         patches = patch.cut(Path(folder))
+    kinds = row("tiling", "kinds to choose from", len(patches), "", 43, PAPER)
+    return [
+        kinds,
+        *tiling_rows(patches, "engine", "", seeds, say),
+        *tiling_rows(patches, "paper", "Algorithms 1 and 2 here: ", seeds, say),
+    ]
+
+
+def tiling_rows(patches: PatchSet, method: str, prefix: str, seeds: int, say: Say) -> list[Row]:
+    """The rows of one method; its crowds are checked like any other."""
     runs = []
     for seed in range(1, seeds + 1):
-        outcome = tile(Scene.demo(), patches, seed=seed)
+        outcome = tile(Scene.demo(), patches, seed=seed, method=method)
         perfect = outcome.status == "perfect" and check.check(outcome.crowd).ok
         runs.append((outcome, check.summary(outcome.crowd), perfect))
-        say(f"tiling: seed {seed} of {seeds}: {outcome.status} in {outcome.solve_secs:.2f} s")
+        say(f"tiling: {method}, seed {seed} of {seeds}: {outcome.status} in {outcome.solve_secs:.2f} s")
 
-    published = tile(Scene.demo(), patches, seed=1, method="paper", time=60)
-    paper = check.summary(published.crowd)
-    say(f"tiling: Algorithms 1 and 2: {published.status} in {published.solve_secs:.2f} s")
+    def add(name: str, ours: float, unit: str = "", reference: float | None = None) -> Row:
+        return row("tiling", prefix + name, float(ours), unit, reference, PAPER if reference is not None else "")
 
     def typical(name: str) -> float:
         return float(median(getattr(summary, name) for _, summary, _ in runs))
 
     return [
-        row("tiling", "solve time", median(run.solve_secs for run, _, _ in runs), "s", 103 * 60, PAPER),
-        row("tiling", "slowest solve", max(run.solve_secs for run, _, _ in runs), "s", 103 * 60, PAPER),
-        row("tiling", "characters", typical("characters"), "", 70, PAPER),
-        row("tiling", "patches placed", typical("instances"), "", 907, PAPER),
-        row("tiling", "kinds to choose from", len(patches), "", 43, PAPER),
-        row("tiling", "share of time in patches of two or more", typical("multi_person_share"), ""),
-        row(
-            "tiling",
-            "danglings, all runs",
-            float(sum(summary.danglings for _, summary, _ in runs)),
-            "",
-            None,
-            PAPER,
-        ),
-        row("tiling", f"perfect and checked, of {seeds}", float(sum(ok for _, _, ok in runs)), ""),
-        row("tiling", "Algorithms 1 and 2 here: time", published.solve_secs, "s", 103 * 60, PAPER),
-        row("tiling", "Algorithms 1 and 2 here: characters", float(paper.characters), "", 70, PAPER),
-        row("tiling", "Algorithms 1 and 2 here: patches placed", float(paper.instances), "", 907, PAPER),
-        row("tiling", "Algorithms 1 and 2 here: share of time together", paper.multi_person_share, ""),
-        row("tiling", "Algorithms 1 and 2 here: danglings", float(paper.danglings), "", None, PAPER),
+        add("solve time", median(run.solve_secs for run, _, _ in runs), "s", 103 * 60),
+        add("slowest solve", max(run.solve_secs for run, _, _ in runs), "s", 103 * 60),
+        add("characters", typical("characters"), "", 70),
+        add("patches placed", typical("instances"), "", 907),
+        add("share of time in patches of two or more", typical("multi_person_share")),
+        add("danglings, all runs", sum(summary.danglings for _, summary, _ in runs), "", 0),
+        add(f"perfect and checked, of {seeds}", sum(ok for _, _, ok in runs)),
     ]
 
 
@@ -84,11 +80,12 @@ AREAS: dict[str, Callable[[int, Say], list[Row]]] = {"tiling": tiling}
 
 def table(rows: list[Row]) -> Table:
     """The rows as one reads them."""
-    made = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
-    for title in ("area", "row", "ours", "unit", "reference", "ratio", "source"):
+    made = Table(box=None, header_style="dim", padding=(0, 2, 0, 0), caption_justify="left", caption_style="dim")
+    for title in ("area", "row", "ours", "reference", "unit", "ratio"):
         made.add_column(title, justify="right" if title in ("ours", "reference", "ratio") else "left")
     for r in rows:
         reference = "" if r.reference is None else f"{r.reference:.6g}"
         ratio = "" if r.ratio is None else f"{r.ratio:.3g}"
-        made.add_row(r.area, r.row, f"{r.ours:.4g}", r.unit, reference, ratio, f"[dim]{r.source}[/dim]")
+        made.add_row(r.area, r.row, f"{r.ours:.4g}", reference, r.unit, ratio)
+    made.caption = "\n".join(["reference:", *dict.fromkeys(r.source for r in rows if r.source)])
     return made

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -12,7 +12,11 @@ from crowdquilt import check, motion
 from crowdquilt._core import Clip, Crowd, CrowdquiltError, PatchSet
 
 JUMP = 8.0  # metres per second from one frame to the next that no hips reach
-SLIDE = 0.05  # metres
+SLIDE = 0.10  # metres that a planted foot may move in a good capture
+FEET = {
+    "left": ("LeftToeBase", "LeftToe", "left_toe", "lFoot"),
+    "right": ("RightToeBase", "RightToe", "right_toe", "rFoot"),
+}
 
 
 @dataclass(frozen=True)
@@ -80,8 +84,8 @@ def inspect_clip(clip: Clip, repairs: Repairs) -> dict[str, Any]:
     plants = 0
     try:
         found = clip.plants()
-        plants, slide = len(found), max((plant[3] for plant in found), default=0.0)
-        if slide > SLIDE:
+        plants, slide = len(found), foot_slide(clip, found)
+        if slide is not None and slide > SLIDE:
             warnings.append(f"a planted foot slides {slide:.2f} m over the ground")
     except CrowdquiltError as error:
         warnings.append(f"cannot be put on the canonical skeleton: {error}")
@@ -98,6 +102,18 @@ def inspect_clip(clip: Clip, repairs: Repairs) -> dict[str, Any]:
         "foot_slide": slide,
         "warnings": warnings,
     }
+
+
+def foot_slide(clip: Clip, plants: list[tuple[Literal["left", "right"], float, float]]) -> float | None:
+    """The farthest a planted foot gets from its middle place over the ground, metres; None without plants."""
+    positions, worst = clip.positions(), None
+    for foot, begin, end in plants:
+        joint = next((clip.joints.index(name) for name in FEET[foot] if name in clip.joints), None)
+        if joint is not None:
+            way = positions[int(begin * clip.fps) : int(end * clip.fps) + 1, joint][:, [0, 2]]
+            slide = float(np.linalg.norm(way - np.median(way, axis=0), axis=1).max())
+            worst = slide if worst is None else max(worst, slide)
+    return worst
 
 
 def clip_warnings(clip: Clip, repairs: Repairs) -> list[str]:

@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 
 use crowdquilt::motion::take::ImportOptions;
-use crowdquilt::motion::{self as core, Foot, bvh, import, joint, plants, retarget};
-use glam::Vec3;
+use crowdquilt::motion::{self as core, Foot, bvh, import, retarget};
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
 
@@ -106,19 +105,13 @@ impl Clip {
         stack(py, values, self.0.skeleton.joints.len(), 3)
     }
 
-    /// The foot plants found once the clip is on the canonical skeleton: (foot, first second, last second, slide in
-    /// metres over the ground). Raises `CrowdquiltError` for a rig of no known family.
-    fn plants(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, f32, f32, f32)>> {
+    /// The foot plants found once the clip is on the canonical skeleton: (foot, first second, last second). Raises
+    /// `CrowdquiltError` for a rig of no known family.
+    fn plants(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, f32, f32)>> {
         let motion = run(py, || retarget::to_canonical(&self.0))?;
-        let balls = [joint::LEFT_TOE, joint::RIGHT_TOE].map(|ball| plants::trajectory(&motion, ball));
         let row = |plant: &core::Plant| {
-            let (name, ball) = match plant.foot {
-                Foot::Left => ("left", &balls[0]),
-                Foot::Right => ("right", &balls[1]),
-            };
-            let way = &ball[plant.begin as usize..=plant.end as usize];
-            let slide = way.iter().map(|p| ((*p - way[0]) * Vec3::new(1.0, 0.0, 1.0)).length()).fold(0.0, f32::max);
-            (name, plant.begin as f32 / core::FPS, plant.end as f32 / core::FPS, slide)
+            let foot = if plant.foot == Foot::Left { "left" } else { "right" };
+            (foot, plant.begin as f32 / core::FPS, plant.end as f32 / core::FPS)
         };
         Ok(motion.plants.iter().map(row).collect())
     }

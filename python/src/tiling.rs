@@ -247,7 +247,9 @@ fn watched(
             let heard = match py.detach(listen) {
                 Err(RecvTimeoutError::Disconnected) => break,
                 Err(RecvTimeoutError::Timeout) => Ok(true),
-                Ok(report) => ask(py, callback.as_ref(), &report),
+                // Who has raised is not asked again.
+                Ok(report) if interrupt.is_none() => ask(py, callback.as_ref(), &report),
+                Ok(_) => Ok(true),
             };
             match heard.and_then(|go_on| py.check_signals().map(|()| go_on)) {
                 Ok(true) => {}

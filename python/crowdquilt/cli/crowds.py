@@ -29,7 +29,7 @@ def tell(outcome: Outcome) -> None:
     made = f"{people} people, {patches} patches, {outcome.danglings} danglings in {outcome.solve_secs:.2f} s"
     if outcome.status == "perfect":
         console.print(f"[green]perfect[/green]: {made}")
-    elif outcome.status == "short":
+    elif outcome.status == "short" and people:
         console.print(f"[yellow]perfect, but a wish is unmet[/yellow]: {made}; {outcome.reason}", soft_wrap=True)
     else:
         console.print(f"[red]not perfect[/red]: {made}; {outcome.reason}", soft_wrap=True)
@@ -72,7 +72,7 @@ def tile(
         report.save(report.build(written, check.check(written), outcome), report_to)
     tell(outcome)
     console.print(f"{out}: written")
-    if outcome.status == "imperfect":
+    if outcome.status == "imperfect" or not len(outcome.crowd):
         raise typer.Exit(NOT_PERFECT)
 
 

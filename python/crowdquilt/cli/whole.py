@@ -50,7 +50,7 @@ def tell(out: Path) -> None:
         console.print(line, soft_wrap=True, markup=False)
     view = "make view" if out == Path("out/demo") else f"crowdquilt view {out / 'crowd.crowd'}"
     console.print(f"Watch it: [bold]{view}[/bold]   Look at it: {out / 'plan.png'}, {out / 'loom.png'}", soft_wrap=True)
-    if data["status"] == "imperfect":
+    if data["status"] == "imperfect" or not data["characters"]:
         raise typer.Exit(NOT_PERFECT)
     if not data["ok"]:
         raise typer.Exit(CHECK_FAILED)
