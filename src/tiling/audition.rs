@@ -1,4 +1,4 @@
-//! Audition: a patch of several people is cast only if it comes out of full-body refinement as clean as it was
+//! Audition: a patch is cast only if it comes out of full-body refinement as clean as it was
 //! captured. Feet that slid in the capture are locked, and where legs are intertwined that can push one into another.
 
 use glam::{Quat, Vec3};

@@ -85,7 +85,7 @@ pub(super) struct Library<'a> {
     pub roles: Vec<Role>,
     /// Index of each kind's first role.
     pub first_role: Vec<u32>,
-    /// Kinds of two or more people that are fit to be cast.
+    /// Kinds of two or more people; like the single ones below, only those that are fit to be cast.
     pub multi: Vec<u32>,
     /// Moves by the pose group they start from, forward in time.
     pub forward: Vec<Vec<Move>>,
@@ -111,7 +111,8 @@ impl<'a> Library<'a> {
         let first_role = (0..set.kinds.len() as u32)
             .map(|k| sources.iter().position(|s| s.0 == k).expect("validated: no kind without people") as u32)
             .collect();
-        let is_single = |role: &Role| set.kinds[role.kind as usize].people() == 1;
+        let fit: Vec<bool> = set.kinds.par_iter().map(plays_cleanly).collect();
+        let is_single = |role: &Role| set.kinds[role.kind as usize].people() == 1 && fit[role.kind as usize];
         let groups = set.groups.len();
         let (mut forward, mut backward) = (vec![Vec::new(); groups], vec![Vec::new(); groups]);
         for (i, role) in roles.iter().enumerate().filter(|(_, r)| is_single(r)) {
@@ -127,8 +128,7 @@ impl<'a> Library<'a> {
             limits,
             first_role,
             multi: (0..set.kinds.len() as u32)
-                .into_par_iter()
-                .filter(|&k| set.kinds[k as usize].people() > 1 && plays_cleanly(&set.kinds[k as usize]))
+                .filter(|&k| set.kinds[k as usize].people() > 1 && fit[k as usize])
                 .collect(),
             forward,
             backward,
