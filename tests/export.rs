@@ -4,7 +4,7 @@
 mod fixture;
 
 use crowdquilt::export::{clip, glb, look};
-use crowdquilt::motion::{FPS, JOINT_COUNT};
+use crowdquilt::motion::{Build, FPS, JOINT_COUNT};
 use crowdquilt::stage::Crowd;
 use glam::{Quat, Vec3};
 use serde_json::Value;
@@ -218,4 +218,44 @@ fn a_bvh_file_read_back_has_the_joints_where_the_crowd_has_them() {
         }
     }
     assert!(crowdquilt::export::bvh(&crowd, 9).is_err());
+}
+
+/// The crowd file with its header changed.
+fn with_header(bytes: &[u8], change: impl FnOnce(&mut Value)) -> Vec<u8> {
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let mut header: Value = serde_json::from_slice(&bytes[24..24 + length]).unwrap();
+    change(&mut header);
+    let mut json = serde_json::to_vec(&header).unwrap();
+    json.resize(json.len().next_multiple_of(8), b' ');
+    let mut out = bytes[..24].to_vec();
+    out[12..16].copy_from_slice(&(json.len() as u32).to_le_bytes());
+    out.extend_from_slice(&json);
+    out.extend_from_slice(&bytes[24 + length..]);
+    out
+}
+
+#[test]
+fn builds_are_kept_in_the_crowd_file_and_files_without_them_are_of_canonical_people() {
+    let mut crowd = crowd();
+    for (character, build) in crowd.characters.iter_mut().zip(Build::catalogue()) {
+        character.build = build[0].clone();
+    }
+    let bytes = crowd.to_bytes();
+    let read = Crowd::from_bytes(&bytes).unwrap();
+    assert_eq!(read.builds().0.len(), 4);
+    assert!(read.characters.iter().zip(&crowd.characters).all(|(a, b)| a.build == b.build));
+    let old = with_header(&bytes, |h| {
+        h.as_object_mut().unwrap().remove("builds");
+        h["characters"]
+            .as_array_mut()
+            .unwrap()
+            .iter_mut()
+            .for_each(|c| drop(c.as_object_mut().unwrap().remove("build")));
+    });
+    assert!(Crowd::from_bytes(&old).unwrap().characters.iter().all(|c| c.build == Build::canonical()));
+    let told = |change: &dyn Fn(&mut Value)| Crowd::from_bytes(&with_header(&bytes, change)).unwrap_err().to_string();
+    let missing = told(&|h| h["characters"][1]["build"] = 9.into());
+    assert!(missing.contains("character 1") && missing.contains("below 4, found 9"), "{missing}");
+    let bent = told(&|h| h["builds"][2]["offsets"][2][1] = (-9.0).into());
+    assert!(bent.contains("left_leg") && bent.contains("slight"), "{bent}");
 }

@@ -1,6 +1,7 @@
 //! Skeleton, pose, clip, take; importers, retargeting, foot plants.
 
 mod body;
+mod build;
 pub mod bvh;
 mod clip;
 pub mod contacts;
@@ -17,7 +18,10 @@ pub mod take;
 #[cfg(test)]
 pub(crate) mod testing;
 
+pub(crate) use build::{ANKLE_HEIGHT, BuildRows};
+
 pub use body::{BODY_CAPSULES, BodyCapsule, BodyPart, body_capsules};
+pub use build::{Build, Flesh, Proportions};
 pub use clip::Clip;
 pub use mirror::motion as mirror;
 pub use path::{Foot, Motion, MotionPath, Plant};

@@ -3,7 +3,7 @@
 
 use glam::{Quat, Vec3};
 
-use super::{Body, Segment};
+use super::{Body, Segment, smoothstep};
 use crate::motion::ik::two_bone;
 use crate::motion::joint::{LEFT_FOOT, RIGHT_FOOT};
 use crate::motion::{Foot, JOINT_COUNT, canonical};
@@ -143,11 +143,6 @@ fn fill(offsets: &mut [Vec3], from: Option<i32>, to: Option<i32>) {
         let gained = 1.0 - smoothstep((end - f) as f32 / fade as f32);
         offsets[f as usize] = before * left + after * gained;
     }
-}
-
-fn smoothstep(x: f32) -> f32 {
-    let x = x.clamp(0.0, 1.0);
-    x * x * (3.0 - 2.0 * x)
 }
 
 /// How far the hips must come down on each frame for both feet to be in reach, smoothed over time.

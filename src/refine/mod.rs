@@ -3,12 +3,15 @@
 
 mod carry;
 mod feet;
+mod fit;
 
 use glam::{Quat, Vec3};
 
 use crate::motion::{JOINT_COUNT, Motion, canonical};
 use crate::patch::PatchKind;
 use crate::stage::FragmentUse;
+
+pub use fit::{Hold, fit, holds};
 
 /// A fragment in a person's life: what was captured, and how it is placed and timed.
 #[derive(Clone, Copy)]
@@ -70,4 +73,9 @@ pub fn refine(segments: &[Segment], last_frame: u32) -> Body {
     let mut body = carry::carry(segments, last_frame);
     feet::lock(segments, &mut body);
     body
+}
+
+fn smoothstep(x: f32) -> f32 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
 }

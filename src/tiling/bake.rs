@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Scene;
+use super::builds::people;
 use super::library::Library;
 use super::occupancy::{Occupancy, Piece, PieceId};
 use crate::patch::PatchKind;
@@ -79,7 +80,7 @@ pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, bodies: Vec<Body>) 
     let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
     let mut instances = Vec::new();
     let mut characters = Vec::with_capacity(bodies.len());
-    for (person, body) in bodies.into_iter().enumerate() {
+    for (person, (build, body)) in people(chains, bodies, seed).into_iter().enumerate() {
         let mut fragments: Vec<FragmentUse> =
             segments_of(chains, person).into_iter().map(|(_, placed)| placed).collect();
         let roles: BTreeMap<u32, u32> = chains.pieces(person).map(|p| (p.instance, p.role)).collect();
@@ -90,7 +91,8 @@ pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, bodies: Vec<Body>) 
                 instances.len() as u32 - 1
             });
         }
-        characters.push(Character { begin: body.begin, fragments, root: body.root, rotations: body.rotations });
+        let Body { begin, root, rotations, .. } = body;
+        characters.push(Character { begin, build, fragments, root, rotations });
     }
     let domain = DomainInfo {
         region: scene.region.clone(),
