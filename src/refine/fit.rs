@@ -137,7 +137,7 @@ impl<'a> Poses<'a> {
         let of_leg = |up: JointId| {
             let ankle = pose[up + 2].0;
             let stretch = pose[up].0.distance(ankle) / canonical_leg();
-            let reach = leg * stretch.max(EASY_STRETCH).min(MAX_STRETCH);
+            let reach = leg * stretch.clamp(EASY_STRETCH, MAX_STRETCH);
             let hip = pose[HIPS].0 + Vec3::Y * lift + pose[HIPS].1 * self.bones.joints[up].offset;
             let across = (ankle - hip).with_y(0.0).length_squared();
             hip.y - ankle.y - (reach * reach - across).max(0.0).sqrt()
