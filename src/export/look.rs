@@ -14,7 +14,7 @@ pub enum Region {
     Shirt,
     /// Forearms.
     Sleeve,
-    /// Pelvis and thighs.
+    /// Thighs, unless under a skirt.
     Trousers,
     /// Shins.
     Shin,
@@ -28,7 +28,7 @@ pub enum Region {
     Bun,
     /// A cap's visor.
     Visor,
-    /// A skirt over bare thighs.
+    /// A skirt.
     Skirt,
     /// The hips under shirt and skirt.
     Seat,
@@ -84,7 +84,7 @@ pub fn look(person: usize) -> Look {
     set(Region::Hair, hair.filter(|_| !bald));
     set(Region::Shirt, shirt);
     set(Region::Sleeve, if dealt(person, 6, 2) == 0 { skin } else { shirt });
-    set(Region::Trousers, if skirt { skin } else { trousers });
+    set(Region::Trousers, trousers.filter(|_| !skirt));
     set(Region::Shin, if skirt || shorts { skin } else { trousers });
     set(Region::Shoe, pick(&SHOES, 8));
     set(Region::Sole, pick(&SOLE, 9));

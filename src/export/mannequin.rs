@@ -78,7 +78,7 @@ fn build() -> Mannequin {
     body.both_sides(|b| b.sideways(Region::Skin, Part::Hand, 8, PALM));
     body.both_sides(Body::fingers);
     body.both_sides(Body::shoe);
-    body.0.repaint(Region::Trousers, Region::Shin, |p| p.y < 0.53);
+    body.0.repaint(Region::Trousers, Region::Shin, |p| p.y < 0.58);
     let Surface { positions, normals, bindings, triangles } = body.0;
     Mannequin {
         positions,

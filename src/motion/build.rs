@@ -125,7 +125,7 @@ impl Proportions {
         let (limbs, hand) = (self.limbs, 0.5 + 0.5 * self.arms);
         let scale = match joint {
             HIPS => around(1.0, self.hips * (0.65 + 0.35 * self.waist), 0.4 + 0.6 * self.waist),
-            SPINE => around(self.torso, self.waist, self.waist),
+            SPINE => around(self.torso, 0.3 + 0.7 * self.waist, self.waist),
             SPINE1 => around(self.torso, 0.5 * (self.waist + self.chest), 0.6 * self.waist + 0.4 * self.chest),
             SPINE2 => around(self.torso, 0.5 * (self.shoulders + self.chest), self.chest),
             NECK => around(self.head, 0.5 * (self.head + limbs), 0.5 * (self.head + limbs)),
@@ -137,7 +137,7 @@ impl Proportions {
             LEFT_ARM | LEFT_FORE_ARM | RIGHT_ARM | RIGHT_FORE_ARM => Vec3::new(self.arms, limbs, limbs),
             _ => Vec3::splat(hand),
         };
-        let belly = 0.10 * (self.waist - 1.0).max(0.0);
+        let belly = 0.14 * (self.waist - 1.0).max(0.0);
         let forward = match joint {
             SPINE => belly,
             HIPS | SPINE1 => 0.5 * belly,
@@ -221,11 +221,11 @@ const NAMED: [(&str, Factors); 8] = [
     ("average", [1.0; 9]),
     ("tall", [1.085, 1.055, 1.015, 1.065, 1.06, 1.02, 1.03, 1.03, 1.01]),
     ("slight", [0.945, 0.945, 0.975, 0.940, 0.90, 1.00, 0.90, 0.91, 0.86]),
-    ("sturdy", [0.985, 1.010, 1.010, 0.990, 1.05, 1.07, 1.14, 1.13, 1.28]),
+    ("sturdy", [0.985, 1.010, 1.010, 0.990, 1.07, 1.07, 1.14, 1.13, 1.30]),
     ("lean", [1.050, 1.020, 0.995, 1.040, 0.97, 0.95, 0.90, 0.91, 0.86]),
     ("small", [0.915, 0.915, 0.965, 0.915, 0.90, 0.98, 0.96, 0.95, 0.96]),
     ("athletic", [1.025, 1.025, 1.000, 1.025, 1.10, 0.98, 1.10, 1.10, 0.96]),
-    ("round", [0.955, 0.965, 0.990, 0.955, 0.96, 1.08, 1.10, 1.08, 1.26]),
+    ("round", [0.955, 0.965, 0.990, 0.955, 1.02, 1.10, 1.12, 1.12, 1.40]),
 ];
 
 fn proportions([legs, torso, head, arms, shoulders, hips, limbs, chest, waist]: Factors) -> Proportions {
