@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::Scene;
 use super::library::Library;
 use super::occupancy::{Occupancy, Piece, PieceId};
-use crate::patch::PatchKind;
+use crate::patch::{PatchKind, filed_rotation};
 use crate::refine::Body;
 use crate::stage::{Character, Crowd, DomainInfo, FragmentUse, Instance};
 
@@ -90,7 +90,9 @@ pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, bodies: Vec<Body>) 
                 instances.len() as u32 - 1
             });
         }
-        characters.push(Character { begin: body.begin, fragments, root: body.root, rotations: body.rotations });
+        // As a file keeps them: what is checked in memory is what is loaded later.
+        let rotations = body.rotations.into_iter().map(filed_rotation).collect();
+        characters.push(Character { begin: body.begin, fragments, root: body.root, rotations });
     }
     let domain = DomainInfo {
         region: scene.region.clone(),
