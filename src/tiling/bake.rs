@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Scene;
+use super::domain::Domain;
 use super::library::Library;
 use super::occupancy::{Occupancy, Piece, PieceId};
 use crate::patch::{PatchKind, filed_rotation};
@@ -14,8 +15,8 @@ use crate::stage::{Character, Crowd, DomainInfo, FragmentUse, Instance};
 pub(super) struct Chains<'a> {
     /// The patches.
     pub library: &'a Library<'a>,
-    /// Number of ticks.
-    pub horizon: i32,
+    /// Where and when.
+    pub domain: &'a Domain,
     /// The pieces.
     pub occupancy: &'a Occupancy,
     /// A list of pieces per person.
@@ -58,7 +59,7 @@ impl<'a> Chains<'a> {
 /// The fragments of a person that are seen within the domain's time, in order: kind and placement.
 pub(super) fn segments_of<'a>(chains: Chains<'a>, person: usize) -> Vec<(&'a PatchKind, FragmentUse)> {
     let library = chains.library;
-    let seen = chains.pieces(person).filter(|p| p.end > 0 && p.begin < chains.horizon);
+    let seen = chains.pieces(person).filter(|p| p.end > 0 && p.begin < chains.domain.horizon);
     seen.map(|piece| {
         let role = &library.roles[piece.role as usize];
         let placed = FragmentUse {

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::bake::{Chains, segments_of};
 use super::bridge::Taste;
+use super::domain::Domain;
 use super::library::Library;
 use super::tracks::{TrackId, Tracks, Undo, Window};
 use crate::geom::Capsule;
@@ -19,6 +20,8 @@ use crate::patch::{PatchKind, turn_between};
 use crate::refine::{Body, Segment, refine, refine_all};
 use crate::stage::FragmentUse;
 
+/// No body reaches further from its hips than this, metres.
+const REACH: f32 = 1.1;
 /// Bodies whose hips are further apart than this never touch, metres.
 const TOUCHING_HIPS: f32 = 2.2;
 /// Interpenetration that is let pass, metres.
@@ -49,12 +52,12 @@ pub(super) struct Fault {
 pub(super) fn bodies(chains: Chains) -> Vec<Body> {
     let uses: Vec<_> = (0..chains.lists.len()).map(|t| segments_of(chains, t)).collect();
     let people: Vec<Vec<Segment>> = uses.iter().map(|uses| segments(uses)).collect();
-    refine_all(&people, chains.horizon as u32 - 1)
+    refine_all(&people, chains.domain.horizon as u32 - 1)
 }
 
 /// The final body of a person, but for touching others.
 fn body(chains: Chains, track: TrackId) -> Body {
-    refine(&segments(&segments_of(chains, track)), chains.horizon as u32 - 1)
+    refine(&segments(&segments_of(chains, track)), chains.domain.horizon as u32 - 1)
 }
 
 fn segments<'a>(uses: &'a [(&'a PatchKind, FragmentUse)]) -> Vec<Segment<'a>> {
@@ -64,7 +67,7 @@ fn segments<'a>(uses: &'a [(&'a PatchKind, FragmentUse)]) -> Vec<Segment<'a>> {
 /// All faults of the final bodies, each at its first tick.
 pub(super) fn faults(chains: Chains, bodies: &[Body]) -> Vec<Fault> {
     let per_tick: Vec<Vec<(TrackId, TrackId)>> =
-        (0..chains.horizon).into_par_iter().map(|tick| touching(chains, bodies, tick)).collect();
+        (0..chains.domain.horizon).into_par_iter().map(|tick| touching(chains, bodies, tick)).collect();
     let mut open: BTreeSet<(TrackId, TrackId)> = BTreeSet::new();
     let mut faults = Vec::new();
     for (tick, pairs) in per_tick.into_iter().enumerate() {
@@ -73,17 +76,32 @@ pub(super) fn faults(chains: Chains, bodies: &[Body]) -> Vec<Fault> {
         open = now;
     }
     let alone = bodies.par_iter().enumerate().map(|(t, body)| {
-        let frame = first_unclean(body, chains.library, 0..body.root.len());
+        let frame = first_unclean(body, chains, 0..body.root.len());
         frame.map(|f| Fault { a: t, b: t, tick: body.begin as i32 + f as i32 })
     });
     faults.extend(alone.collect::<Vec<_>>().into_iter().flatten());
     faults
 }
 
-/// The first of some frames on which a leg is too short, or a joint turns or the hips move faster than in the captures,
-/// with some allowance.
-fn first_unclean(body: &Body, library: &Library, mut frames: Range<usize>) -> Option<usize> {
-    frames.find(|f| body.strained.binary_search(f).is_ok() || is_rushed(body, library, *f))
+/// The first of some frames on which a leg is too short, a joint turns or the hips move faster than in the captures
+/// (with some allowance), or a limb is in a wall.
+fn first_unclean(body: &Body, chains: Chains, mut frames: Range<usize>) -> Option<usize> {
+    frames.find(|&f| {
+        body.strained.binary_search(&f).is_ok()
+            || is_rushed(body, chains.library, f)
+            || is_in_wall(body, chains.domain, f)
+    })
+}
+
+fn is_in_wall(body: &Body, domain: &Domain, frame: usize) -> bool {
+    let root = body.root[frame];
+    if domain.holds(Vec2::new(root.x, root.z), REACH) {
+        return false;
+    }
+    let inside = |p: Vec3, radius: f32| domain.holds(Vec2::new(p.x, p.z), radius - TOLERANCE);
+    // Bones are so short that three discs each are as good as the whole.
+    let shapes = capsules(body, frame, &mut Vec::new());
+    !shapes.iter().all(|c| [0.0, 0.5, 1.0].into_iter().all(|t| inside(c.a.lerp(c.b, t), c.radius)))
 }
 
 fn is_rushed(body: &Body, library: &Library, frame: usize) -> bool {
@@ -200,5 +218,5 @@ fn rebridge(tracks: &mut Tracks, windows: &[Window], ticks: i32, taste: Taste, r
 fn is_clean(chains: Chains, track: TrackId, (from, to): (i32, i32)) -> bool {
     let body = body(chains, track);
     let frame = |tick: i32| (tick - body.begin as i32).clamp(0, body.root.len() as i32) as usize;
-    first_unclean(&body, chains.library, frame(from - BLEND_TICKS)..frame(to + BLEND_TICKS)).is_none()
+    first_unclean(&body, chains, frame(from - BLEND_TICKS)..frame(to + BLEND_TICKS)).is_none()
 }
