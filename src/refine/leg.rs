@@ -9,11 +9,11 @@ use crate::motion::{JOINT_COUNT, canonical};
 /// Largest part of a leg's length that is used, so that knees never lock.
 const LEG_STRETCH: f32 = 0.995;
 /// Hips come down by this much before a heel comes up, metres.
-const EASY_LOWERING: f32 = 0.03;
+const EASY_LOWERING: f32 = 0.045;
 /// Most that hips are lowered, metres.
 const MAX_LOWERING: f32 = 0.10;
 /// Most that a heel is lifted, as a turn of the foot about its ball, radians.
-const MAX_LIFT: f32 = 35.0 / 180.0 * std::f32::consts::PI;
+const MAX_LIFT: f32 = 25.0 / 180.0 * std::f32::consts::PI;
 
 /// Where a leg is and where its foot is to stand, in the world.
 #[derive(Clone, Copy)]

@@ -64,7 +64,7 @@ const MAX_TURN: f32 = std::f32::consts::FRAC_PI_3;
 /// A state this close to a wall leads nowhere.
 const WALL_ROOM: f32 = 0.3;
 /// Steps sideways and back cost this much more than walking ahead: people turn to where they go.
-const ASKEW_WEIGHT: f32 = 0.3;
+const ASKEW_WEIGHT: f32 = 0.2;
 /// Below this mean speed a patch counts as standing, m/s.
 const STANDING_SPEED: f32 = 0.25;
 

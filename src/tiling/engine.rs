@@ -161,7 +161,7 @@ fn engine(
 /// The denser the crowd, the more people rather stand than walk.
 fn calm(scene: &Scene) -> f32 {
     let density = scene.characters as f32 / scene.region.area();
-    (1.6 - density).clamp(0.3, 1.3)
+    (1.58 - density).clamp(0.3, 1.3)
 }
 
 fn state(tracks: &Tracks, phase: Phase) -> Progress {

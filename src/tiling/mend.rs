@@ -161,7 +161,7 @@ fn capsules(body: &Body, frame: usize, globals: &mut Vec<(Vec3, Quat)>) -> Vec<C
 pub(super) fn mend(tracks: &mut Tracks, fault: Fault, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
     (0..TRIES).any(|attempt| {
         let track = if rng.random_range(0..2) == 0 { fault.a } else { fault.b };
-        let ticks = WINDOW * (1 + attempt / 2);
+        let ticks = WINDOW * (1 + attempt);
         near(tracks, track, fault.tick, 1, |people| people == 1)
             .is_some_and(|at| rebridge(tracks, &[Window { track, from: at, to: at + 1 }], ticks, taste, rng))
     })
