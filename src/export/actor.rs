@@ -75,7 +75,8 @@ impl Writer {
             extensions: None,
             extras: Default::default(),
         };
-        let [times, vectors, rotations] = [0, 1, 2].map(|after| Stream::later(&root, after));
+        let first = root.buffer_views.len() as u32;
+        let [times, vectors, rotations] = [0, 1, 2].map(|after| Stream::new(first + after, None, None));
         let shared_times = BTreeMap::new();
         Self { root, animation, scene: Vec::new(), last_frame, times, vectors, rotations, shared_times }
     }

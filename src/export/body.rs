@@ -119,7 +119,7 @@ fn attributes(root: &mut Root, binary: &mut Vec<u8>, builds: &[&Build]) -> Vec<A
     let body = mannequin();
     let grown: Vec<_> = builds.iter().map(|b| body.grown(b)).collect();
     let mut out = vec![Attributes::new(); builds.len()];
-    let mut stream = Stream::new(root, Some(Target::ArrayBuffer), Some(12));
+    let mut stream = Stream::next(root, Some(Target::ArrayBuffer), Some(12));
     for ((positions, _), out) in grown.iter().zip(&mut out) {
         let index = stream.accessor(root, positions, ComponentType::F32, Type::Vec3);
         let (low, high) = bounds(positions);
@@ -128,17 +128,17 @@ fn attributes(root: &mut Root, binary: &mut Vec<u8>, builds: &[&Build]) -> Vec<A
         out.insert(Checked::Valid(Semantic::Positions), index);
     }
     stream.finish(root, binary);
-    let mut stream = Stream::new(root, Some(Target::ArrayBuffer), Some(12));
+    let mut stream = Stream::next(root, Some(Target::ArrayBuffer), Some(12));
     for ((_, normals), out) in grown.iter().zip(&mut out) {
         let index = stream.accessor(root, normals, ComponentType::F32, Type::Vec3);
         out.insert(Checked::Valid(Semantic::Normals), index);
     }
     stream.finish(root, binary);
     let joints: Vec<[u8; 4]> = body.joints.iter().map(|j| j.map(|j| j as u8)).collect();
-    let mut stream = Stream::new(root, Some(Target::ArrayBuffer), Some(4));
+    let mut stream = Stream::next(root, Some(Target::ArrayBuffer), Some(4));
     let joints = stream.accessor(root, &joints, ComponentType::U8, Type::Vec4);
     stream.finish(root, binary);
-    let mut stream = Stream::new(root, Some(Target::ArrayBuffer), Some(16));
+    let mut stream = Stream::next(root, Some(Target::ArrayBuffer), Some(16));
     let weights = stream.accessor(root, &body.weights, ComponentType::F32, Type::Vec4);
     stream.finish(root, binary);
     for out in &mut out {
@@ -155,7 +155,7 @@ pub(super) fn bounds(points: &[Vec3]) -> (Value, Value) {
 
 /// The rest pose's joints are not turned, so that binding only moves.
 fn binds(root: &mut Root, binary: &mut Vec<u8>, builds: &[&Build]) -> Vec<Index<Accessor>> {
-    let mut stream = Stream::new(root, None, None);
+    let mut stream = Stream::next(root, None, None);
     let matrices = |b: &&Build| -> Vec<[f32; 16]> {
         rest(&b.skeleton).into_iter().map(|p| Mat4::from_translation(-p).to_cols_array()).collect()
     };
@@ -176,7 +176,7 @@ fn cuts(
     binary: &mut Vec<u8>,
     looks: impl Iterator<Item = Look>,
 ) -> BTreeMap<Vec<Region>, Index<Accessor>> {
-    let mut stream = Stream::new(root, Some(Target::ElementArrayBuffer), None);
+    let mut stream = Stream::next(root, Some(Target::ElementArrayBuffer), None);
     let mut cuts = BTreeMap::new();
     for (_, regions) in looks.flat_map(|look| pieces(&look)) {
         let triangles = regions.iter().flat_map(|&r| &mannequin().triangles[r as usize]).flatten();

@@ -14,14 +14,14 @@ pub(super) struct Stream {
 }
 
 impl Stream {
-    /// The stream of the next buffer view; it must be finished before the one after it.
-    pub(super) fn new(root: &Root, target: Option<Target>, stride: Option<usize>) -> Self {
-        Self { view: root.buffer_views.len() as u32, bytes: Vec::new(), target, stride }
+    /// The stream of buffer view number `view`; views must be finished in the order of their numbers.
+    pub(super) fn new(view: u32, target: Option<Target>, stride: Option<usize>) -> Self {
+        Self { view, bytes: Vec::new(), target, stride }
     }
 
-    /// The stream of the buffer view that comes `after` so many others; views must be finished in their order.
-    pub(super) fn later(root: &Root, after: u32) -> Self {
-        Self { view: root.buffer_views.len() as u32 + after, bytes: Vec::new(), target: None, stride: None }
+    /// The stream of the next buffer view; it must be finished before the one after it.
+    pub(super) fn next(root: &Root, target: Option<Target>, stride: Option<usize>) -> Self {
+        Self::new(root.buffer_views.len() as u32, target, stride)
     }
 
     /// Appends `values` and an accessor to them. Every element must be a multiple of four bytes.

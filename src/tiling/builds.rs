@@ -6,13 +6,14 @@
 
 use std::sync::Arc;
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use super::bake::{Chains, segments_of};
+use super::domain::Domain;
 use super::library::Library;
 use crate::geom::Capsule;
 use crate::motion::{Build, JOINT_COUNT, body_capsules};
@@ -23,6 +24,8 @@ use crate::refine::{Body, Hold, Segment, fit, holds};
 const TONES: usize = 3;
 /// Joints may turn this much faster than in the captures.
 const RUSH: f32 = 1.18;
+/// No body reaches further from its hips than this, metres.
+const REACH: f32 = 1.1;
 /// Interpenetration that is let pass, metres.
 const TOLERANCE: f32 = 0.005;
 /// People of one patch may be this much deeper in each other than with canonical bodies, metres.
@@ -34,8 +37,11 @@ pub(super) fn people(chains: Chains, bodies: Vec<Body>, seed: u64) -> Vec<(Arc<B
     let holds: Vec<Vec<Hold>> = (0..bodies.len()).into_par_iter().map(|p| holds_of(chains, p, &bodies[p])).collect();
     let dress = |p: usize, tone: usize| {
         let wearable = |&tone: &usize| {
-            let body = fit(&bodies[p], &holds[p], &Build::catalogue()[dealt[p]][tone]);
-            let sound = body.strained.len() <= bodies[p].strained.len() && !rushes(&body, chains.library);
+            let build = &Build::catalogue()[dealt[p]][tone];
+            let body = fit(&bodies[p], &holds[p], build);
+            let sound = body.strained.len() <= bodies[p].strained.len()
+                && !rushes(&body, chains.library)
+                && !in_wall(&body, build, chains.domain);
             (tone == TONES - 1 || sound).then_some((tone, body))
         };
         (tone..TONES).find_map(|tone| wearable(&tone)).expect("the last tone is always worn")
@@ -58,6 +64,18 @@ fn rushes(body: &Body, library: &Library) -> bool {
     (1..body.root.len()).any(|f| {
         let (before, now) = (body.pose(f - 1), body.pose(f));
         (0..JOINT_COUNT).any(|j| turn_between(before[j], now[j]) > RUSH * library.fastest[j])
+    })
+}
+
+/// True if a limb is ever in a wall.
+fn in_wall(body: &Body, build: &Build, domain: &Domain) -> bool {
+    let inside = |p: Vec3, radius: f32| domain.holds(Vec2::new(p.x, p.z), radius - TOLERANCE);
+    let near = |f: &usize| !domain.holds(Vec2::new(body.root[*f].x, body.root[*f].z), REACH);
+    (0..body.root.len()).filter(near).any(|f| {
+        let shape = Shape::new(0, body, build, body.begin as i32 + f as i32).expect("a frame of the body");
+        // Bones are so short that three discs each are as good as the whole.
+        let free = |c: &Capsule| [0.0, 0.5, 1.0].into_iter().all(|t| inside(c.a.lerp(c.b, t), c.radius));
+        !shape.capsules.iter().all(free)
     })
 }
 
@@ -120,7 +138,7 @@ fn clashes(
         }
         pairs
     };
-    let mut all: Vec<(usize, usize)> = (0..chains.horizon).into_par_iter().flat_map_iter(at_tick).collect();
+    let mut all: Vec<(usize, usize)> = (0..chains.domain.horizon).into_par_iter().flat_map_iter(at_tick).collect();
     all.sort_unstable();
     all.dedup();
     all
@@ -159,7 +177,7 @@ impl Shape {
         let (mut globals, mut capsules) = (Vec::new(), Vec::new());
         build.skeleton.globals(body.root[frame], body.pose(frame), &mut globals);
         body_capsules(&globals, &mut capsules);
-        let ground = |v: glam::Vec3| Vec2::new(v.x, v.z);
+        let ground = |v: Vec3| Vec2::new(v.x, v.z);
         let center = ground(body.root[frame]);
         let reach = |c: &Capsule| ground(c.a).distance(center).max(ground(c.b).distance(center)) + c.radius;
         let radius = capsules.iter().map(reach).fold(0.0, f32::max);
