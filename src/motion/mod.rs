@@ -1,5 +1,6 @@
 //! Skeleton, pose, clip, take; importers, retargeting, foot plants.
 
+pub mod asfamc;
 mod body;
 pub mod bvh;
 mod clip;

@@ -9,7 +9,7 @@ pub use format::Format;
 pub use repair::{guess_unit, repair, standing_height};
 
 use super::take::ImportOptions;
-use super::{Clip, bvh};
+use super::{Clip, asfamc, bvh};
 use crate::{Error, Result};
 
 /// What a reader found in a file, in the file's own units.
@@ -47,13 +47,19 @@ pub fn load(path: &Path, options: &ImportOptions) -> Result<Clip> {
 /// As [`load`], except that several characters are welcome.
 pub fn load_all(path: &Path, options: &ImportOptions) -> Result<Vec<Clip>> {
     let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
-    let capture = read(path, &bytes, options).map_err(|e| e.in_file(path))?;
+    let capture = read(path, &bytes, options)?;
     finish(path, capture, options).map_err(|e| e.in_file(path))
 }
 
 fn read(path: &Path, bytes: &[u8], options: &ImportOptions) -> Result<Capture> {
     match Format::of(path, bytes)? {
-        Format::Bvh => Ok(Capture { clips: vec![bvh::read(bytes)?], metres_per_unit: None }),
+        Format::Bvh => {
+            let clip = bvh::read(bytes).map_err(|e| e.in_file(path))?;
+            Ok(Capture { clips: vec![clip], metres_per_unit: None })
+        }
+        // Two files: it names the one that is bad.
+        Format::Amc => asfamc::load(path, bytes, options.skeleton.as_deref()),
+        Format::Fbx | Format::Gltf => todo!(),
     }
 }
 
