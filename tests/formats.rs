@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crowdquilt::motion::take::ImportOptions;
 use crowdquilt::motion::{Clip, import};
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 /// The folder of captures, if it is there.
 fn mocap() -> Option<PathBuf> {
@@ -74,5 +74,75 @@ fn amc_and_bvh_of_one_capture_agree() {
     for (ours, theirs) in TWINS {
         let far = farthest(&trajectory(&amc, ours), &trajectory(&bvh, theirs));
         assert!(far < 0.005, "{ours} and {theirs}: {far} m apart");
+    }
+}
+
+/// Any real or generated clip comes back from both files that we write: places within 0.1 mm, rotations within 0.01
+/// degrees.
+fn round_trips(clip: &Clip) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let unit = ImportOptions { metres_per_unit: Some(1.0), ..Default::default() };
+    let glb = folder.join(format!("{}.clip.glb", clip.name));
+    std::fs::write(&glb, crowdquilt::export::clip_glb(clip)).unwrap();
+    same(clip, &load(&glb, ImportOptions::default()), "GLB");
+    let bvh = folder.join(format!("{}.clip.bvh", clip.name));
+    std::fs::write(&bvh, crowdquilt::motion::bvh::write(clip)).unwrap();
+    same(clip, &load(&bvh, unit), "BVH");
+}
+
+fn same(clip: &Clip, back: &Clip, format: &str) {
+    let place = |what: &str| format!("{} as {format}: {what}", clip.name);
+    assert_eq!(clip.frames(), back.frames(), "{}", place("frames"));
+    assert!((clip.fps / back.fps - 1.0).abs() < 1e-5, "{} {} {}", place("rate"), clip.fps, back.fps);
+    assert_eq!(clip.skeleton.joints.len(), back.skeleton.joints.len(), "{}", place("joints"));
+    let order: Vec<usize> =
+        clip.skeleton.joints.iter().map(|j| back.skeleton.find(&j.name).expect("the joint's name")).collect();
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    for frame in 0..clip.frames() {
+        clip.globals(frame, &mut a);
+        back.globals(frame, &mut b);
+        for (j, (ours, &at)) in a.iter().zip(&order).enumerate() {
+            let far = ours.0.distance(b[at].0);
+            assert!(far < 1e-4, "{} frame {frame} joint {j}: {far} m", place("place"));
+            let turned = turn_between(ours.1, b[at].1).to_degrees();
+            assert!(turned < 0.01, "{} frame {frame} joint {j}: {turned} degrees", place("rotation"));
+        }
+    }
+    for (joint, &at) in clip.skeleton.joints.iter().zip(&order) {
+        if let Some(tip) = joint.tip {
+            assert!(back.skeleton.joints[at].tip.unwrap().distance(tip) < 1e-4, "{}", place("tip"));
+        }
+    }
+}
+
+/// The angle between two rotations. (By its sine, since single precision cannot tell small angles by their cosine.)
+fn turn_between(a: Quat, b: Quat) -> f32 {
+    2.0 * (a.as_dquat().inverse() * b.as_dquat()).xyz().length().min(1.0).asin() as f32
+}
+
+#[test]
+fn samples_come_back_from_every_file() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("formats_samples");
+    crowdquilt::samples::write(&folder, 1).unwrap();
+    let mut files: Vec<PathBuf> = std::fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e == "bvh"));
+    files.sort();
+    assert!(files.len() > 10, "{}", files.len());
+    for file in files {
+        round_trips(&load(&file, ImportOptions::default()));
+    }
+}
+
+#[test]
+fn captures_come_back_from_every_file() {
+    let Some(folder) = mocap() else { return };
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder.join("bvh")).unwrap().map(|e| e.unwrap().path()).collect();
+    files.sort();
+    for file in files {
+        let mut clip = load(&file, ImportOptions::default());
+        let (frames, joints) = (clip.frames().min(300), clip.skeleton.joints.len());
+        clip.root.truncate(frames);
+        clip.rotations.truncate(frames * joints);
+        round_trips(&clip);
     }
 }

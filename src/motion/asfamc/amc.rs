@@ -37,7 +37,8 @@ pub fn read(figure: &Figure, bytes: &[u8]) -> Result<Clip> {
         return Err(error);
     }
     if let Some(short) = frames.get(whole) {
-        reader.frame(short, &mut vec![Quat::IDENTITY; joints], &mut Vec3::ZERO)?;
+        let (mut pose, mut root) = (vec![Quat::IDENTITY; joints], Vec3::ZERO);
+        reader.frame(short, &mut pose, &mut root)?;
     }
     Ok(Clip { name: String::new(), skeleton: figure.skeleton.clone(), fps: super::FPS, root, rotations })
 }

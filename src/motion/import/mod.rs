@@ -9,8 +9,11 @@ pub use format::Format;
 pub use repair::{guess_unit, repair, standing_height};
 
 use super::take::ImportOptions;
-use super::{Clip, asfamc, bvh};
+use super::{Clip, asfamc, bvh, gltf};
 use crate::{Error, Result};
+
+/// Fastest rate at which animations are sampled, however fast the wish.
+const FASTEST: f32 = 1000.0;
 
 /// What a reader found in a file, in the file's own units.
 pub(crate) struct Capture {
@@ -59,7 +62,22 @@ fn read(path: &Path, bytes: &[u8], options: &ImportOptions) -> Result<Capture> {
         }
         // Two files: it names the one that is bad.
         Format::Amc => asfamc::load(path, bytes, options.skeleton.as_deref()),
-        Format::Fbx | Format::Gltf => todo!(),
+        Format::Gltf => {
+            let folder = path.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p });
+            let source = gltf::Source { folder, animation: options.animation.as_deref(), fps: sampled(options)? };
+            gltf::read(bytes, source).map_err(|e| e.in_file(path))
+        }
+        Format::Fbx => todo!(),
+    }
+}
+
+/// The rate at which keys are sampled, if one is asked for.
+fn sampled(options: &ImportOptions) -> Result<Option<f32>> {
+    match options.fps.filter(|fps| !(bvh::MIN_FPS..=FASTEST).contains(fps)) {
+        Some(fps) => {
+            Err(Error::invalid("", "import.fps", format!("expected {} to {FASTEST}, found {fps}", bvh::MIN_FPS)))
+        }
+        None => Ok(options.fps),
     }
 }
 
