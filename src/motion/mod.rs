@@ -5,6 +5,7 @@ mod body;
 pub mod bvh;
 mod clip;
 pub mod contacts;
+mod fbx;
 pub mod gait;
 mod gltf;
 pub mod ik;
