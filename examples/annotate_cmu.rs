@@ -186,6 +186,7 @@ impl Index {
                 fps: text("fps_true").parse().ok(),
                 drop_first_frames: text("drop_first_frames").parse().unwrap_or(0),
                 restore_thorax: ["cmu-mb", "cmu-max"].iter().any(|family| text("skeleton").starts_with(family)),
+                ..Default::default()
             };
             rows.insert(text("take"), TakePerson { file: text("file"), import });
         }

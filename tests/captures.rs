@@ -41,6 +41,7 @@ fn rows(folder: &Path) -> Vec<Row> {
             fps: row[column("fps_true")].parse().ok(),
             drop_first_frames: row[column("drop_first_frames")].parse().unwrap(),
             restore_thorax: ["cmu-mb", "cmu-max"].iter().any(|f| row[column("skeleton")].starts_with(f)),
+            ..Default::default()
         },
     });
     rows.collect()

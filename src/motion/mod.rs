@@ -1,17 +1,22 @@
 //! Skeleton, pose, clip, take; importers, retargeting, foot plants.
 
+pub mod asfamc;
 mod body;
 mod build;
 pub mod bvh;
 mod clip;
 pub mod contacts;
+mod fbx;
 pub mod gait;
+mod gltf;
 pub mod ik;
 pub mod import;
 pub mod mirror;
+mod nodes;
 mod path;
 pub mod plants;
 pub mod pose;
+mod rate;
 pub mod retarget;
 mod skeleton;
 pub mod take;

@@ -20,6 +20,15 @@ pub struct ImportOptions {
     pub drop_first_frames: u32,
     /// Put back the thorax bone that cgspeed's MotionBuilder conversion lost.
     pub restore_thorax: bool,
+    /// Which character of a file of several (FBX, glTF), by name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub character: Option<String>,
+    /// Which animation of a file of several (FBX, glTF), by name; by default the first that moves somebody.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub animation: Option<String>,
+    /// The ASF file of an AMC file, relative to it; by default found beside it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub skeleton: Option<String>,
 }
 
 /// One person of a take.
