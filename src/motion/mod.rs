@@ -11,6 +11,7 @@ pub mod mirror;
 mod path;
 pub mod plants;
 pub mod pose;
+pub mod presets;
 pub mod retarget;
 mod skeleton;
 pub mod take;
