@@ -12,8 +12,10 @@ mod path;
 pub mod plants;
 pub mod pose;
 pub mod presets;
+pub mod quality;
 pub mod retarget;
 mod skeleton;
+pub mod symptoms;
 pub mod take;
 #[cfg(test)]
 pub(crate) mod testing;

@@ -22,6 +22,7 @@ pub mod rigfile;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use floor::lowest;
 pub use names::{RigMatch, match_rig};
 pub use rest::RestRig;
 pub use rig::rest_turns;
