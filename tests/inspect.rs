@@ -62,7 +62,7 @@ fn repaired_files_raise_no_alarm() {
 #[test]
 fn free_fall_tells_wrong_rates() {
     let Some(folder) = mocap::folder() else { return };
-    for take in ["02_04", "13_11", "13_39", "49_02", "49_04", "131_03"] {
+    for take in ["02_04", "13_11", "13_39", "49_02", "49_04"] {
         let row = mocap::rows(&folder).into_iter().find(|r| r.take == take).unwrap();
         for stated in [30.0, 60.0, 240.0] {
             let wrong = ImportOptions { fps: Some(stated), ..row.import.clone() };
@@ -96,6 +96,20 @@ fn figures_of_real_captures_are_plausible() {
         let clip = import::load(&row.file, &row.import).unwrap();
         let q = quality::measure(&clip).unwrap();
         slides.extend(q.slide_median);
+        println!(
+            "{}: slide {:.3} worst {:.3}, speed {:.1} {}, acceleration {:.0} {} p99 {:.0}, below {:.3} p99 {:.3}, {} pops",
+            row.take,
+            q.slide_median.unwrap_or(f32::NAN),
+            q.slide_worst.unwrap_or(f32::NAN),
+            q.speed.value,
+            q.speed.joint,
+            q.acceleration.value,
+            q.acceleration.joint,
+            q.acceleration_p99,
+            q.penetration_worst,
+            q.penetration_p99,
+            q.pops.len()
+        );
         assert!(q.speed.value > 0.1 && q.acceleration_p99 < 300.0, "{}: {q:?}", row.take);
         assert!(q.penetration_p99 < 0.12, "{}: {} m in the ground", row.take, q.penetration_p99);
         assert_eq!(q.plants.len(), retarget::to_canonical(&clip).unwrap().plants.len());

@@ -17,6 +17,7 @@ pub mod retarget;
 mod skeleton;
 pub mod symptoms;
 pub mod take;
+pub mod together;
 #[cfg(test)]
 pub(crate) mod testing;
 
