@@ -110,8 +110,14 @@ fn figures_of_real_captures_are_plausible() {
             q.penetration_p99,
             q.pops.len()
         );
-        assert!(q.speed.value > 0.1 && q.acceleration_p99 < 300.0, "{}: {q:?}", row.take);
+        assert!(q.speed.value > 0.1 && q.acceleration_p99 < 600.0, "{}: {q:?}", row.take);
         assert!(q.penetration_p99 < 0.12, "{}: {} m in the ground", row.take, q.penetration_p99);
+        // The index counts frames with accelerations above 400 m/s2 in its own way: none there, hardly one here.
+        match row.take.as_str() {
+            "09_12" => assert!(q.pops.len() >= 10, "{}: {:?}", row.take, q.pops),
+            "29_01" | "49_18" | "49_13" | "32_02" => assert!(q.pops.is_empty(), "{}: {:?}", row.take, q.pops),
+            _ => {}
+        }
         assert_eq!(q.plants.len(), retarget::to_canonical(&clip).unwrap().plants.len());
     }
     slides.sort_by(f32::total_cmp);

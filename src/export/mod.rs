@@ -1,11 +1,12 @@
 //! A finished crowd in the formats of others.
 //!
 //! [`glb`] writes a whole crowd as one binary glTF file with the [`mannequin`] as everybody's body; [`clip`] and
-//! [`bvh`] take one person out.
+//! [`bvh`] take one person out; [`clip_glb`] writes a clip on any skeleton.
 
 mod body;
 mod buffer;
 mod clip;
+mod clip_glb;
 mod glb;
 mod loft;
 mod look;
@@ -14,6 +15,7 @@ mod shape;
 mod skinning;
 
 pub use clip::{bvh, clip};
+pub use clip_glb::clip_glb;
 pub use glb::glb;
 pub use look::{LOOKS, Look, look};
 pub use mannequin::{Mannequin, Material, mannequin};

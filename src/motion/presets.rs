@@ -93,7 +93,7 @@ impl ImportOptions {
             fps: self.fps.or(preset.fps),
             drop_first_frames: self.drop_first_frames.or(Some(preset.drop_first_frames)),
             restore_thorax: self.restore_thorax.or(Some(preset.restore_thorax)),
-            rig: self.rig.clone(),
+            ..self.clone()
         })
     }
 }

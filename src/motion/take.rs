@@ -31,6 +31,15 @@ pub struct ImportOptions {
     /// A rig file that says which joint is which (see [`super::retarget::rigfile`]), beside the capture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rig: Option<String>,
+    /// Which character of a file of several (FBX, glTF), by name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub character: Option<String>,
+    /// Which animation of a file of several (FBX, glTF), by name; by default the first that moves somebody.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub animation: Option<String>,
+    /// The ASF file of an AMC file, relative to it; by default found beside it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub skeleton: Option<String>,
 }
 
 /// One person of a take.
@@ -42,7 +51,7 @@ pub struct TakePerson {
     /// Repairs.
     #[serde(default)]
     pub import: ImportOptions,
-    /// Which person of a file that holds several: number (from 0) or name; default the first.
+    /// Which person of a file that holds several: number (from 0) or name; not needed where it holds one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub character: Option<Character>,
     /// Where and when this capture's origin is in the take.

@@ -38,29 +38,24 @@ pub fn load(take: &TakeFile, locate: impl Fn(&str) -> PathBuf) -> Result<Vec<Cli
     }
 }
 
-/// Loads one person of a capture: the first, or the one that `character` names.
+/// Loads one person of a capture: the only one, or the one that `character` names or counts.
 ///
 /// # Errors
-/// As [`import::load_all`]; nobody of that number or name.
+/// As [`import::load`]; nobody of that number.
 pub fn load_one(path: &Path, options: &ImportOptions, character: Option<&Character>) -> Result<Clip> {
-    let Some(character) = character else { return import::load(path, options) };
-    let mut clips = import::load_all(path, options)?;
-    let found = match character {
-        Character::Index(index) => (*index < clips.len()).then_some(*index),
-        Character::Name(name) => clips.iter().position(|c| c.name == *name),
-    };
-    match found {
-        Some(index) => Ok(clips.swap_remove(index)),
-        None => {
-            let names: Vec<String> = clips.iter().enumerate().map(|(i, c)| format!("{i} '{}'", c.name)).collect();
-            let wanted = match character {
-                Character::Index(index) => index.to_string(),
-                Character::Name(name) => format!("'{name}'"),
-            };
-            let problem = format!("expected a character of the file ({}), found {wanted}", names.join(", "));
-            Err(Error::invalid(path.display().to_string(), "character", problem))
+    let index = match character {
+        None => return import::load(path, options),
+        Some(Character::Name(name)) => {
+            return import::load(path, &ImportOptions { character: Some(name.clone()), ..options.clone() });
         }
+        Some(Character::Index(index)) => *index,
+    };
+    let mut clips = import::load_all(path, options)?;
+    if index < clips.len() {
+        return Ok(clips.swap_remove(index));
     }
+    let problem = format!("expected a character below {}, found {index}", clips.len());
+    Err(Error::invalid(path.display().to_string(), "character", problem))
 }
 
 /// Turns and moves clips by their offsets and cuts them to the time that all share, if any has an offset in time.
@@ -70,7 +65,11 @@ pub fn load_one(path: &Path, options: &ImportOptions, character: Option<&Charact
 pub fn align(clips: &mut [Clip], offsets: &[Offset]) -> Result<()> {
     for (clip, offset) in clips.iter_mut().zip(offsets) {
         if ![offset.time, offset.x, offset.z, offset.heading_deg].iter().all(|v| v.is_finite()) {
-            return Err(Error::invalid(clip.name.clone(), "offset", format!("expected finite numbers, found {offset:?}")));
+            return Err(Error::invalid(
+                clip.name.clone(),
+                "offset",
+                format!("expected finite numbers, found {offset:?}"),
+            ));
         }
         place(clip, offset);
     }
@@ -150,7 +149,8 @@ pub fn distances(clips: &[Clip]) -> Vec<Apart> {
                 ways[i].get(frame).or(ways[i].last()).copied().unwrap_or(Vec3::NAN).with_y(0.0)
             };
             let count = (seconds * super::FPS) as usize + 1;
-            let gaps: Vec<f32> = (0..count).map(|f| f as f32 / super::FPS).map(|t| at(a, t).distance(at(b, t))).collect();
+            let gaps: Vec<f32> =
+                (0..count).map(|f| f as f32 / super::FPS).map(|t| at(a, t).distance(at(b, t))).collect();
             out.push(Apart {
                 people: [a, b],
                 nearest: gaps.iter().copied().fold(f32::INFINITY, f32::min),
@@ -174,7 +174,13 @@ pub fn check(clips: &[Clip]) -> Vec<Finding> {
             }
             if (first.seconds() - other.seconds()).abs() > MUCH_LONGER {
                 let (a, b) = (first.seconds(), other.seconds());
-                say(format!("{} takes {a:.2} s, {} {b:.2} s: do they begin at one time (offset.time)?", first.name, other.name), false);
+                say(
+                    format!(
+                        "{} takes {a:.2} s, {} {b:.2} s: do they begin at one time (offset.time)?",
+                        first.name, other.name
+                    ),
+                    false,
+                );
             }
         }
     }
@@ -182,11 +188,21 @@ pub fn check(clips: &[Clip]) -> Vec<Finding> {
         let [a, b] = apart.people.map(|i| clips[i].name.as_str());
         if apart.nearest > FAR_APART {
             let near = apart.nearest;
-            say(format!("expected people in one world, found {a} and {b} never nearer than {near:.0} m: is a unit wrong, or an offset missing?"), true);
+            say(
+                format!(
+                    "expected people in one world, found {a} and {b} never nearer than {near:.0} m: is a unit wrong, or an offset missing?"
+                ),
+                true,
+            );
         }
         if apart.inside > 0.05 {
             let share = 100.0 * apart.inside;
-            say(format!("{a} and {b} stand inside each other for {share:.0} % of the time: an offset, or the same capture twice?"), false);
+            say(
+                format!(
+                    "{a} and {b} stand inside each other for {share:.0} % of the time: an offset, or the same capture twice?"
+                ),
+                false,
+            );
         }
     }
     found

@@ -9,7 +9,7 @@
 //! play several canonical ones.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::names::PINNED;
 use crate::motion::{Skeleton, canonical};
@@ -71,9 +71,12 @@ impl RigFile {
         Ok(())
     }
 
-    /// Where a rig file is that a capture's options name: beside the capture, or as the path says.
-    pub(crate) fn locate(name: &str, capture: &Path) -> PathBuf {
+    /// The rig file that a capture's options name: beside the capture, or where the path says.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn find(name: &str, capture: &Path) -> Result<Self> {
         let beside = capture.parent().unwrap_or(Path::new("")).join(name);
-        if beside.is_file() { beside } else { PathBuf::from(name) }
+        Self::load(if beside.is_file() { &beside } else { Path::new(name) })
     }
 }

@@ -1,38 +1,12 @@
-//! Import of captures: reads a file and repairs what captures get wrong, by explicit options (see [`ImportOptions`]).
-
-use std::path::Path;
+//! Repairs of what captures get wrong, by explicit options (see [`ImportOptions`]).
 
 use glam::Vec3;
 
-use super::retarget::rigfile::RigFile;
-use super::take::ImportOptions;
-use super::{Clip, bvh};
+use crate::motion::take::ImportOptions;
+use crate::motion::{Clip, Joint, bvh};
 use crate::{Error, Result};
 
-/// Reads the capture at `path` (BVH) and repairs it: metres, true frame rate, leading frames dropped, thorax restored.
-///
-/// Time 0 of the clip is the first frame kept. Where `metres_per_unit` is absent it is guessed by [`guess_unit`].
-///
-/// # Errors
-/// The file is bad (names the line), or an option does not fit it (names the option).
-pub fn load(path: &Path, options: &ImportOptions) -> Result<Clip> {
-    let clip = bvh::load(path)?;
-    name_joints(clip, options, path).and_then(|clip| repair(clip, options)).map_err(|e| e.in_file(path))
-}
-
-/// Gives the joints that the options' rig file names the names by which retargeting knows them.
-///
-/// # Errors
-/// The rig file is bad, or names joints that the clip does not have.
-pub fn name_joints(mut clip: Clip, options: &ImportOptions, capture: &Path) -> Result<Clip> {
-    if let Some(name) = &options.rig {
-        let file = RigFile::locate(name, capture);
-        RigFile::load(&file)?.apply(&mut clip.skeleton).map_err(|e| e.in_file(&file))?;
-    }
-    Ok(clip)
-}
-
-/// Applies the repairs to a clip in its file's own units. See [`load`].
+/// Applies the repairs to a clip in its file's own units. See [`load`](super::load).
 ///
 /// # Errors
 /// An option that does not fit the clip.
@@ -79,7 +53,7 @@ fn scale(clip: &mut Clip, factor: f32) {
 /// cgspeed's conversions of CMU's captures collapse to nothing. The lost bone is close to a copy of the one below it.
 fn restore_thorax(clip: &mut Clip) -> Result<()> {
     let joints = &mut clip.skeleton.joints;
-    let collapsed = |chest: usize, joints: &[super::Joint]| -> Vec<usize> {
+    let collapsed = |chest: usize, joints: &[Joint]| -> Vec<usize> {
         (0..joints.len()).filter(|&j| joints[j].parent == Some(chest) && joints[j].offset == Vec3::ZERO).collect()
     };
     let found = (1..joints.len()).map(|chest| (chest, collapsed(chest, joints))).find(|(_, lost)| lost.len() >= 3);
@@ -135,9 +109,10 @@ pub fn standing_height(clip: &Clip) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use glam::Quat;
+
     use super::*;
     use crate::motion::{JOINT_COUNT, canonical};
-    use glam::Quat;
 
     fn standing(scale_by: f32) -> Clip {
         let skeleton = canonical().clone();
