@@ -16,12 +16,16 @@ mod nodes;
 mod path;
 pub mod plants;
 pub mod pose;
+pub mod presets;
+pub mod quality;
 mod rate;
 pub mod retarget;
 mod skeleton;
+pub mod symptoms;
 pub mod take;
 #[cfg(test)]
 pub(crate) mod testing;
+pub mod together;
 
 pub(crate) use build::{ANKLE_HEIGHT, BuildRows};
 
