@@ -29,7 +29,7 @@ pub fn load_clip(
     drop_first_frames: u32,
     restore_thorax: bool,
 ) -> PyResult<Clip> {
-    let options = ImportOptions { metres_per_unit, fps, drop_first_frames, restore_thorax };
+    let options = ImportOptions { metres_per_unit, fps, drop_first_frames, restore_thorax, ..Default::default() };
     run(py, || import::load(&path, &options)).map(Clip)
 }
 

@@ -1,22 +1,30 @@
 //! Skeleton, pose, clip, take; importers, retargeting, foot plants.
 
+pub mod asfamc;
 mod body;
 mod build;
 pub mod bvh;
 mod clip;
 pub mod contacts;
 pub mod gait;
+mod gltf;
 pub mod ik;
 pub mod import;
 pub mod mirror;
+mod nodes;
 mod path;
 pub mod plants;
 pub mod pose;
+pub mod presets;
+pub mod quality;
+mod rate;
 pub mod retarget;
 mod skeleton;
+pub mod symptoms;
 pub mod take;
 #[cfg(test)]
 pub(crate) mod testing;
+pub mod together;
 
 pub(crate) use build::{ANKLE_HEIGHT, BuildRows};
 

@@ -1,29 +1,17 @@
-//! Import of captures: reads a file and repairs what captures get wrong, by explicit options (see [`ImportOptions`]).
-
-use std::path::Path;
+//! Repairs of what captures get wrong, by explicit options (see [`ImportOptions`]).
 
 use glam::Vec3;
 
-use super::take::ImportOptions;
-use super::{Clip, bvh};
+use crate::motion::take::ImportOptions;
+use crate::motion::{Clip, Joint, bvh};
 use crate::{Error, Result};
 
-/// Reads the capture at `path` (BVH) and repairs it: metres, true frame rate, leading frames dropped, thorax restored.
-///
-/// Time 0 of the clip is the first frame kept. Where `metres_per_unit` is absent it is guessed by [`guess_unit`].
-///
-/// # Errors
-/// The file is bad (names the line), or an option does not fit it (names the option).
-pub fn load(path: &Path, options: &ImportOptions) -> Result<Clip> {
-    let clip = bvh::load(path)?;
-    repair(clip, options).map_err(|e| e.in_file(path))
-}
-
-/// Applies the repairs to a clip in its file's own units. See [`load`].
+/// Applies the repairs to a clip in its file's own units. See [`load`](super::load).
 ///
 /// # Errors
 /// An option that does not fit the clip.
 pub fn repair(mut clip: Clip, options: &ImportOptions) -> Result<Clip> {
+    let options = &options.resolved()?;
     let bad = |option: &str, problem: String| Error::invalid(clip.name.clone(), format!("import.{option}"), problem);
     let positive = |option: &str, value: Option<f32>| match value {
         Some(v) if !(v.is_finite() && v > 0.0) => Err(bad(option, format!("expected a positive number, found {v}"))),
@@ -34,7 +22,7 @@ pub fn repair(mut clip: Clip, options: &ImportOptions) -> Result<Clip> {
     if let Some(slow) = fps.filter(|&fps| fps < bvh::MIN_FPS) {
         return Err(bad("fps", format!("expected at least {} per second, found {slow}", bvh::MIN_FPS)));
     }
-    let drop = options.drop_first_frames as usize;
+    let drop = options.drop_first_frames.unwrap_or(0) as usize;
     if drop >= clip.frames() {
         return Err(bad("drop_first_frames", format!("expected fewer than {} frames, found {drop}", clip.frames())));
     }
@@ -42,7 +30,7 @@ pub fn repair(mut clip: Clip, options: &ImportOptions) -> Result<Clip> {
     clip.root.drain(..drop);
     clip.rotations.drain(..drop * joints);
     clip.fps = fps.unwrap_or(clip.fps);
-    if options.restore_thorax {
+    if options.restore_thorax == Some(true) {
         restore_thorax(&mut clip)?;
     }
     let unit = match unit {
@@ -65,7 +53,7 @@ fn scale(clip: &mut Clip, factor: f32) {
 /// cgspeed's conversions of CMU's captures collapse to nothing. The lost bone is close to a copy of the one below it.
 fn restore_thorax(clip: &mut Clip) -> Result<()> {
     let joints = &mut clip.skeleton.joints;
-    let collapsed = |chest: usize, joints: &[super::Joint]| -> Vec<usize> {
+    let collapsed = |chest: usize, joints: &[Joint]| -> Vec<usize> {
         (0..joints.len()).filter(|&j| joints[j].parent == Some(chest) && joints[j].offset == Vec3::ZERO).collect()
     };
     let found = (1..joints.len()).map(|chest| (chest, collapsed(chest, joints))).find(|(_, lost)| lost.len() >= 3);
@@ -121,9 +109,10 @@ pub fn standing_height(clip: &Clip) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use glam::Quat;
+
     use super::*;
     use crate::motion::{JOINT_COUNT, canonical};
-    use glam::Quat;
 
     fn standing(scale_by: f32) -> Clip {
         let skeleton = canonical().clone();
@@ -151,16 +140,22 @@ mod tests {
             let found = repair(standing(1.0), &options).unwrap_err().to_string();
             assert!(found.contains(text), "{found}");
         };
-        says(ImportOptions { drop_first_frames: 5, ..Default::default() }, "import.drop_first_frames: expected fewer");
+        says(
+            ImportOptions { drop_first_frames: Some(5), ..Default::default() },
+            "import.drop_first_frames: expected fewer",
+        );
         says(ImportOptions { fps: Some(0.0), ..Default::default() }, "import.fps: expected a positive");
         says(ImportOptions { fps: Some(0.001), ..Default::default() }, "import.fps: expected at least 1");
         says(ImportOptions { metres_per_unit: Some(f32::NAN), ..Default::default() }, "import.metres_per_unit");
-        says(ImportOptions { restore_thorax: true, ..Default::default() }, "import.restore_thorax: expected a chest");
+        says(
+            ImportOptions { restore_thorax: Some(true), ..Default::default() },
+            "import.restore_thorax: expected a chest",
+        );
     }
 
     #[test]
     fn leading_frames_go_and_the_rate_changes() {
-        let options = ImportOptions { drop_first_frames: 3, fps: Some(60.0), ..Default::default() };
+        let options = ImportOptions { drop_first_frames: Some(3), fps: Some(60.0), ..Default::default() };
         let clip = repair(standing(1.0), &options).unwrap();
         assert_eq!((clip.frames(), clip.rotations.len(), clip.fps), (2, 2 * JOINT_COUNT, 60.0));
     }

@@ -1,0 +1,148 @@
+//! Captures in one format say what they say in another.
+//!
+//! The real ones are in `../shared/mocap`, or where `CROWDQUILT_MOCAP` says; tests of them say so and pass without.
+
+use std::path::{Path, PathBuf};
+
+use crowdquilt::motion::take::ImportOptions;
+use crowdquilt::motion::{Clip, import};
+use glam::{Quat, Vec3};
+
+/// The folder of captures, if it is there.
+fn mocap() -> Option<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = std::env::var_os("CROWDQUILT_MOCAP").map_or_else(|| root.join("../shared/mocap"), PathBuf::from);
+    if folder.join("index.csv").is_file() {
+        return Some(folder);
+    }
+    eprintln!("skipped: no captures at {} (set CROWDQUILT_MOCAP to a folder with index.csv)", folder.display());
+    None
+}
+
+fn load(path: &Path, options: ImportOptions) -> Clip {
+    import::load(path, &options).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn trajectory(clip: &Clip, joint: &str) -> Vec<Vec3> {
+    clip.trajectory(clip.skeleton.find(joint).unwrap_or_else(|| panic!("no joint {joint}")))
+}
+
+fn farthest(a: &[Vec3], b: &[Vec3]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
+}
+
+/// ASF's joints, and those that stand at the same place in cgspeed's BVH conversion. (Fingers and thumbs are left
+/// out: the conversion lost the wrist's bone like the thorax's.)
+const TWINS: [(&str, &str); 25] = [
+    ("root", "Hips"),
+    ("lhipjoint", "LHipJoint"),
+    ("lfemur", "LeftUpLeg"),
+    ("ltibia", "LeftLeg"),
+    ("lfoot", "LeftFoot"),
+    ("ltoes", "LeftToeBase"),
+    ("rhipjoint", "RHipJoint"),
+    ("rfemur", "RightUpLeg"),
+    ("rtibia", "RightLeg"),
+    ("rfoot", "RightFoot"),
+    ("rtoes", "RightToeBase"),
+    ("lowerback", "LowerBack"),
+    ("upperback", "Spine"),
+    ("thorax", "Spine1"),
+    ("lowerneck", "Neck"),
+    ("upperneck", "Neck1"),
+    ("head", "Head"),
+    ("lclavicle", "LeftShoulder"),
+    ("lhumerus", "LeftArm"),
+    ("lradius", "LeftForeArm"),
+    ("lwrist", "LeftHand"),
+    ("rclavicle", "RightShoulder"),
+    ("rhumerus", "RightArm"),
+    ("rradius", "RightForeArm"),
+    ("rwrist", "RightHand"),
+];
+
+#[test]
+fn amc_and_bvh_of_one_capture_agree() {
+    let Some(folder) = mocap() else { return };
+    let amc = load(&folder.join("asfamc/02_01.amc"), ImportOptions::default());
+    let unit = Some(0.0564444);
+    let repairs =
+        ImportOptions { metres_per_unit: unit, drop_first_frames: 1, restore_thorax: true, ..Default::default() };
+    let bvh = load(&folder.join("bvh/02_01.bvh"), repairs);
+    assert_eq!(amc.frames(), bvh.frames());
+    assert!((amc.fps - bvh.fps).abs() < 0.01);
+    for (ours, theirs) in TWINS {
+        let far = farthest(&trajectory(&amc, ours), &trajectory(&bvh, theirs));
+        assert!(far < 0.005, "{ours} and {theirs}: {far} m apart");
+    }
+}
+
+/// Any real or generated clip comes back from both files that we write: places within 0.1 mm, rotations within 0.01
+/// degrees.
+fn round_trips(clip: &Clip) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let unit = ImportOptions { metres_per_unit: Some(1.0), ..Default::default() };
+    let glb = folder.join(format!("{}.clip.glb", clip.name));
+    std::fs::write(&glb, crowdquilt::export::clip_glb(clip)).unwrap();
+    same(clip, &load(&glb, ImportOptions::default()), "GLB");
+    let bvh = folder.join(format!("{}.clip.bvh", clip.name));
+    std::fs::write(&bvh, crowdquilt::motion::bvh::write(clip)).unwrap();
+    same(clip, &load(&bvh, unit), "BVH");
+}
+
+fn same(clip: &Clip, back: &Clip, format: &str) {
+    let place = |what: &str| format!("{} as {format}: {what}", clip.name);
+    assert_eq!(clip.frames(), back.frames(), "{}", place("frames"));
+    assert!((clip.fps / back.fps - 1.0).abs() < 1e-5, "{} {} {}", place("rate"), clip.fps, back.fps);
+    assert_eq!(clip.skeleton.joints.len(), back.skeleton.joints.len(), "{}", place("joints"));
+    let order: Vec<usize> =
+        clip.skeleton.joints.iter().map(|j| back.skeleton.find(&j.name).expect("the joint's name")).collect();
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    for frame in 0..clip.frames() {
+        clip.globals(frame, &mut a);
+        back.globals(frame, &mut b);
+        for (j, (ours, &at)) in a.iter().zip(&order).enumerate() {
+            let far = ours.0.distance(b[at].0);
+            assert!(far < 1e-4, "{} frame {frame} joint {j}: {far} m", place("place"));
+            let turned = turn_between(ours.1, b[at].1).to_degrees();
+            assert!(turned < 0.01, "{} frame {frame} joint {j}: {turned} degrees", place("rotation"));
+        }
+    }
+    for (joint, &at) in clip.skeleton.joints.iter().zip(&order) {
+        if let Some(tip) = joint.tip {
+            assert!(back.skeleton.joints[at].tip.unwrap().distance(tip) < 1e-4, "{}", place("tip"));
+        }
+    }
+}
+
+/// The angle between two rotations. (By its sine, since single precision cannot tell small angles by their cosine.)
+fn turn_between(a: Quat, b: Quat) -> f32 {
+    2.0 * (a.as_dquat().inverse() * b.as_dquat()).xyz().length().min(1.0).asin() as f32
+}
+
+#[test]
+fn samples_come_back_from_every_file() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("formats_samples");
+    crowdquilt::samples::write(&folder, 1).unwrap();
+    let mut files: Vec<PathBuf> = std::fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e == "bvh"));
+    files.sort();
+    assert!(files.len() > 10, "{}", files.len());
+    for file in files {
+        round_trips(&load(&file, ImportOptions::default()));
+    }
+}
+
+#[test]
+fn captures_come_back_from_every_file() {
+    let Some(folder) = mocap() else { return };
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder.join("bvh")).unwrap().map(|e| e.unwrap().path()).collect();
+    files.sort();
+    for file in files {
+        let mut clip = load(&file, ImportOptions::default());
+        let (frames, joints) = (clip.frames().min(300), clip.skeleton.joints.len());
+        clip.root.truncate(frames);
+        clip.rotations.truncate(frames * joints);
+        round_trips(&clip);
+    }
+}
