@@ -6,6 +6,7 @@ mod build;
 pub mod bvh;
 mod clip;
 pub mod contacts;
+mod fbx;
 pub mod gait;
 mod gltf;
 pub mod ik;

@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn a_heel_comes_up_where_the_leg_is_too_short_and_the_ball_stays() {
-        let shift = Vec3::new(0.0, 0.0, -0.36);
+        let shift = Vec3::new(0.0, 0.0, -0.3);
         let (missed, before, after) = planted(shift);
         assert!(missed < 1e-3, "{missed}");
         let (ball, toe) = (LEFT_FOOT + 1, LEFT_FOOT + 1);

@@ -10,7 +10,7 @@ pub use repair::{guess_unit, repair, standing_height};
 
 use super::retarget::rigfile::RigFile;
 use super::take::ImportOptions;
-use super::{Clip, asfamc, bvh, gltf};
+use super::{Clip, asfamc, bvh, fbx, gltf};
 use crate::{Error, Result};
 
 /// Fastest rate at which animations are sampled, however fast the wish.
@@ -69,7 +69,7 @@ fn read(path: &Path, bytes: &[u8], options: &ImportOptions) -> Result<Capture> {
             let source = gltf::Source { folder, animation: options.animation.as_deref(), fps: sampled(options)? };
             gltf::read(bytes, source).map_err(|e| e.in_file(path))
         }
-        Format::Fbx => todo!(),
+        Format::Fbx => fbx::read(bytes, options.animation.as_deref(), sampled(options)?).map_err(|e| e.in_file(path)),
     }
 }
 
