@@ -2,11 +2,13 @@
 //! `tests/clients`.
 
 mod fixture;
+mod glb_file;
 
 use crowdquilt::export::{clip, glb, look};
 use crowdquilt::motion::{Build, FPS, JOINT_COUNT};
 use crowdquilt::stage::Crowd;
 use glam::{Quat, Vec3};
+use glb_file::Glb;
 use serde_json::Value;
 
 /// The fixture, with a person who comes late and one who leaves early.
@@ -23,64 +25,6 @@ fn crowd() -> Crowd {
         character.build = build[0].clone();
     }
     crowd
-}
-
-/// A GLB taken apart.
-struct Glb {
-    json: Value,
-    binary: Vec<u8>,
-}
-
-impl Glb {
-    fn open(bytes: &[u8]) -> Self {
-        let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
-        assert_eq!(&bytes[..4], b"glTF");
-        assert_eq!((word(4), word(8)), (2, bytes.len()));
-        let json = word(12);
-        assert_eq!(&bytes[16..20], b"JSON");
-        assert_eq!(&bytes[24 + json..28 + json], b"BIN\0");
-        assert_eq!(word(20 + json), bytes.len() - 28 - json);
-        Self { json: serde_json::from_slice(&bytes[20..20 + json]).unwrap(), binary: bytes[28 + json..].to_vec() }
-    }
-
-    /// The numbers of an accessor; normalised shorts as fractions.
-    fn numbers(&self, accessor: &Value) -> Vec<f32> {
-        let accessor = &self.json["accessors"][accessor.as_u64().unwrap() as usize];
-        let view = &self.json["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
-        let at = |v: &Value| v["byteOffset"].as_u64().unwrap_or(0) as usize;
-        let width = match accessor["type"].as_str().unwrap() {
-            "SCALAR" => 1,
-            "VEC3" => 3,
-            _ => 4,
-        };
-        let count = accessor["count"].as_u64().unwrap() as usize * width;
-        let bytes = &self.binary[at(view) + at(accessor)..];
-        match accessor["componentType"].as_u64().unwrap() {
-            5126 => bytes.chunks_exact(4).take(count).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect(),
-            5122 => bytes
-                .chunks_exact(2)
-                .take(count)
-                .map(|b| (i16::from_le_bytes(b.try_into().unwrap()) as f32 / 32767.0).max(-1.0))
-                .collect(),
-            other => panic!("component type {other}"),
-        }
-    }
-
-    fn node(&self, name: &str) -> usize {
-        self.json["nodes"].as_array().unwrap().iter().position(|n| n["name"] == name).unwrap()
-    }
-
-    /// Times and values of the channel that drives `path` of the node `name`.
-    fn channel(&self, name: &str, path: &str) -> Option<(Vec<f32>, Vec<f32>, String)> {
-        let animation = &self.json["animations"][0];
-        let node = self.node(name);
-        let channel = animation["channels"].as_array().unwrap().iter();
-        let mut found = channel.filter(|c| c["target"]["node"] == node && c["target"]["path"] == path);
-        let sampler = &animation["samplers"][found.next()?["sampler"].as_u64().unwrap() as usize];
-        assert!(found.next().is_none(), "two channels drive {name}.{path}");
-        let interpolation = sampler["interpolation"].as_str().unwrap_or("LINEAR").to_owned();
-        Some((self.numbers(&sampler["input"]), self.numbers(&sampler["output"]), interpolation))
-    }
 }
 
 fn sample(times: &[f32], at: f32) -> (usize, usize, f32) {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from crowdquilt._core import Crowd
@@ -12,10 +13,15 @@ from crowdquilt.outputs import whole_file, whole_folder
 __all__ = ["bvh", "glb", "save_bvh", "save_glb", "save_person"]
 
 
-def save_glb(crowd: Crowd, path: Path) -> Path:
-    """Write every person as one skinned, animated mesh into one binary glTF file."""
+def save_glb(crowd: Crowd, path: Path, characters: Sequence[Path] = ()) -> Path:
+    """Write every person as a skinned, animated mesh into one binary glTF file.
+
+    `characters` are `.glb` files of skinned humanoids (Mixamo, VRM, Unreal, Unity, Rigify, ... joint names), in any
+    upright rest pose and of any size; they are dealt out to the people in place of the mannequin.
+    """
+    written = glb(crowd, list(characters))
     with whole_file(path) as part:
-        part.write_bytes(glb(crowd))
+        part.write_bytes(written)
     return path
 
 

@@ -152,3 +152,18 @@ def test_python_raises_what_it_says(tmp_path: Path) -> None:
     with pytest.raises(cq.CrowdquiltError, match="interaction"):
         cq.Scene.demo().replace(interaction=1.5)
     assert cq.CrowdquiltError.__bases__ == (Exception,)
+
+
+def test_a_character_that_is_none_is_refused(tmp_path: Path, walkers: Path) -> None:
+    out, whole = tmp_path / "x.glb", tmp_path / "crowd.glb"
+    assert crowdquilt("export", walkers, "-o", whole).returncode == 0
+    text = tmp_path / "text.glb"
+    text.write_text("not a character")
+    assert "byte 0" in refused(crowdquilt("export", walkers, "-o", out, "--character", text), "text.glb")
+    cut = tmp_path / "cut.glb"
+    cut.write_bytes(whole.read_bytes()[:-100])
+    refused(crowdquilt("export", walkers, "-o", out, "--character", cut), "cut.glb")
+    refused(crowdquilt("export", walkers, "-o", out, "--character", tmp_path / "none.glb"), "none.glb")
+    done = crowdquilt("export", walkers, "-o", tmp_path / "bvh", "--character", whole)
+    assert done.returncode == 2 and "--character" in done.stderr
+    assert not out.exists()

@@ -22,11 +22,13 @@ pub(super) struct Bone {
     pub translation: Vec3,
     pub rotation: Quat,
     pub scale: Vec3,
+    /// A stiff part that hangs from it: eyes, glasses.
+    pub mesh: Option<Index<Mesh>>,
 }
 
 impl Bone {
     pub(super) fn new(name: &str, translation: Vec3) -> Self {
-        Self { name: name.into(), parent: None, translation, rotation: Quat::IDENTITY, scale: Vec3::ONE }
+        Self { name: name.into(), parent: None, translation, rotation: Quat::IDENTITY, scale: Vec3::ONE, mesh: None }
     }
 }
 
@@ -34,8 +36,8 @@ impl Bone {
 #[derive(Clone, Debug)]
 pub(super) struct Dress {
     pub mesh: Index<Mesh>,
-    /// Inverse bind matrices.
-    pub bind: Index<Accessor>,
+    /// Inverse bind matrices; none if they are all identities.
+    pub bind: Option<Index<Accessor>>,
     /// The bones they are for.
     pub joints: Vec<usize>,
 }
@@ -103,7 +105,7 @@ impl Writer {
             let suffix = if k == 0 { String::new() } else { format!("_{k}") };
             let skin = self.root.push(Skin {
                 joints: dress.joints.iter().map(|&j| nodes[j]).collect(),
-                inverse_bind_matrices: Some(dress.bind),
+                inverse_bind_matrices: dress.bind,
                 skeleton: Some(nodes[keys.root]).filter(|_| dress.joints.contains(&keys.root)),
                 name: Some(format!("person_{index}{suffix}")),
                 extensions: None,
@@ -139,6 +141,7 @@ impl Writer {
                 translation: Some(place.to_array()),
                 rotation: Some(UnitQuaternion(turn.normalize().to_array())),
                 scale: (bone.scale != Vec3::ONE).then_some(bone.scale.to_array()),
+                mesh: bone.mesh,
                 ..Default::default()
             });
         }

@@ -9,13 +9,23 @@
 use gltf_json::{Asset, Index, Root, Scene};
 
 use super::actor::{Keys, Writer};
+use super::avatar::{Avatar, Graft};
 use super::body::Wardrobe;
 use super::buffer::assemble;
+use super::look::dealt;
 use crate::motion::JOINT_COUNT;
 use crate::stage::{Character, Crowd};
 
 /// The crowd as the bytes of a `.glb` file: all people with a final motion, one animation, keys at 30 frames a second.
 pub fn glb(crowd: &Crowd) -> Vec<u8> {
+    glb_with(crowd, &[])
+}
+
+/// As [`glb`], with `avatars` dealt out in place of the mannequin; without any it is the mannequin.
+///
+/// Every avatar is scaled so that its legs are as long as those of the person it plays, and posed so that its bones
+/// point where theirs do and its feet stand where theirs stand.
+pub fn glb_with(crowd: &Crowd, avatars: &[Avatar]) -> Vec<u8> {
     let people: Vec<(usize, &Character)> =
         crowd.characters.iter().enumerate().filter(|(_, c)| c.frames() > 0).collect();
     let mut root = Root { asset: asset(), ..Default::default() };
@@ -23,11 +33,29 @@ pub fn glb(crowd: &Crowd) -> Vec<u8> {
         return nobody(root);
     }
     let mut binary = Vec::new();
+    if avatars.is_empty() {
+        mannequins(crowd, &people, root, binary)
+    } else {
+        let grafts: Vec<Graft> = avatars.iter().map(|a| a.graft(&mut root, &mut binary)).collect();
+        let mut writer = Writer::new(root, crowd.domain.last_frame);
+        for (person, character) in people {
+            let number = dealt(person, AVATAR_SALT, avatars.len());
+            let (bones, keys) = avatars[number].play(character, &grafts[number]);
+            writer.person(person, character, &bones, &grafts[number].dresses, &keys);
+        }
+        writer.finish(binary)
+    }
+}
+
+/// Who plays whom is dealt like clothes; see [`super::look`].
+const AVATAR_SALT: u32 = 20;
+
+fn mannequins(crowd: &Crowd, people: &[(usize, &Character)], mut root: Root, mut binary: Vec<u8>) -> Vec<u8> {
     let (builds, own) = crowd.builds();
     let numbers: Vec<(usize, usize)> = people.iter().map(|&(person, _)| (person, own[person])).collect();
     let wardrobe = Wardrobe::new(&mut root, &mut binary, &builds, &numbers);
     let mut writer = Writer::new(root, crowd.domain.last_frame);
-    for (person, character) in people {
+    for &(person, character) in people {
         let (bones, dress) = (wardrobe.bones(own[person]), wardrobe.dress(person, own[person]));
         writer.person(person, character, bones, &[dress], &keys(character));
     }

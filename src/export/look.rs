@@ -97,7 +97,7 @@ pub fn look(person: usize) -> Look {
 }
 
 /// A card from shuffled rounds of `kinds` cards, one for each person in turn.
-fn dealt(person: usize, salt: u32, kinds: usize) -> usize {
+pub(super) fn dealt(person: usize, salt: u32, kinds: usize) -> usize {
     let first = person - person % kinds;
     let round: BTreeSet<(u32, usize)> = (0..kinds).map(|k| (mixed((first + k) as u32, salt), k)).collect();
     round.into_iter().nth(person % kinds).expect("a card for each").1

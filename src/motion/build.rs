@@ -124,13 +124,13 @@ impl Proportions {
         let around = |along: f32, x: f32, z: f32| Vec3::new(x, along, z);
         let (limbs, hand) = (self.limbs, 0.5 + 0.5 * self.arms);
         let scale = match joint {
-            HIPS => around(1.0, self.hips * (0.65 + 0.35 * self.waist), 0.4 + 0.6 * self.waist),
+            HIPS => around(1.0, self.hips * (0.4 + 0.3 * self.waist + 0.3 * limbs), 0.3 + 0.4 * self.waist + 0.3 * limbs),
             SPINE => around(self.torso, 0.3 + 0.7 * self.waist, self.waist),
             SPINE1 => around(self.torso, 0.5 * (self.waist + self.chest), 0.6 * self.waist + 0.4 * self.chest),
             SPINE2 => around(self.torso, 0.5 * (self.shoulders + self.chest), self.chest),
             NECK => around(self.head, 0.5 * (self.head + limbs), 0.5 * (self.head + limbs)),
             HEAD => Vec3::splat(self.head),
-            LEFT_UP_LEG | RIGHT_UP_LEG => around(self.legs, limbs, limbs),
+            LEFT_UP_LEG | RIGHT_UP_LEG => around(self.legs, 0.5 + 0.5 * limbs, limbs),
             LEFT_LEG | RIGHT_LEG => around(self.legs, limbs, limbs),
             LEFT_FOOT | LEFT_TOE | RIGHT_FOOT | RIGHT_TOE => Vec3::new(0.5 + 0.5 * limbs, 1.0, 1.0),
             LEFT_SHOULDER | RIGHT_SHOULDER => Vec3::new(self.shoulders, limbs, self.chest),

@@ -12,6 +12,7 @@ import numpy as np
 @dataclass
 class Person:
     begin: int
+    offsets: np.ndarray  # joints x 3: the person's bones, metres
     root: np.ndarray  # frames x 3, metres
     rotations: np.ndarray  # frames x joints x 4, quaternions x, y, z, w; the hips' global, others local
 
@@ -30,10 +31,12 @@ def read(path: Path) -> tuple[dict[str, Any], list[Person]]:
     joints = len(header["skeleton"]["joints"])
     root = array("root", "<f4").reshape(-1, 3).astype(float)
     rotations = array("rotations", "<i2").reshape(-1, joints, 4) / 32767.0
+    bones = [build["offsets"] for build in header.get("builds", [])]
+    bones = np.array(bones or [[joint["offset"] for joint in header["skeleton"]["joints"]]])
     people, at = [], 0
     for c in header["characters"]:
         frames = slice(at, at + c["frames"])
-        people.append(Person(c["begin"], root[frames], rotations[frames]))
+        people.append(Person(c["begin"], bones[c.get("build", 0)], root[frames], rotations[frames]))
         at += c["frames"]
     return header, people
 
@@ -63,5 +66,5 @@ def joint_positions(header: dict[str, Any], person: Person, frame: int) -> dict[
             placed.append(person.root[i])
         else:
             turned.append(multiply(turned[parent], local))
-            placed.append(placed[parent] + rotate(turned[parent], np.array(joint["offset"])))
+            placed.append(placed[parent] + rotate(turned[parent], person.offsets[j]))
     return {joint["name"]: placed[j] for j, joint in enumerate(header["skeleton"]["joints"])}

@@ -79,7 +79,7 @@ def test_everybody_has_a_skinned_body(crowd):
     _, people = crowd
     bodies = [o for o in bpy.data.objects if o.type == "MESH" and any(m.type == "ARMATURE" for m in o.modifiers)]
     assert len(bodies) == sum(len(p.root) > 0 for p in people)
-    assert all(len(o.data.materials) == 5 for o in bodies)
+    assert all(4 <= len(o.data.materials) <= 9 for o in bodies)
 
 
 def test_a_bvh_file_has_the_joints_within_a_millimetre():

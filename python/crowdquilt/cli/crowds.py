@@ -103,7 +103,14 @@ def check_file(
         raise typer.Exit(CHECK_FAILED)
 
 
-@app.command("export", epilog=example("export plaza.crowd -o plaza.glb", "export plaza.crowd -o plaza_bvh"))
+@app.command(
+    "export",
+    epilog=example(
+        "export plaza.crowd -o plaza.glb",
+        "export plaza.crowd -o plaza.glb --character ann.glb --character bob.glb",
+        "export plaza.crowd -o plaza_bvh",
+    ),
+)
 def export_file(
     crowd: Annotated[Path, typer.Argument(help="Crowd (.crowd).")],
     out: Annotated[
@@ -111,12 +118,18 @@ def export_file(
         typer.Option("--out", "-o", help="A .glb file; a .bvh file of one person; or a folder for all BVH files."),
     ],
     person: Annotated[int | None, typer.Option(help="Which person goes into the .bvh file.")] = None,
+    character: Annotated[
+        list[Path] | None,
+        typer.Option(help="Your own skinned humanoid (.glb) in place of the mannequin; repeat it to deal out several."),
+    ] = None,
 ) -> None:
     """Write a crowd for other programs: glTF with skinned, animated people, or BVH."""
     found = Crowd.load(crowd)
+    if character and out.suffix != ".glb":
+        raise typer.BadParameter(f"characters go into .glb files: found {out}", param_hint="--character")
     match out.suffix:
         case ".glb":
-            export.save_glb(found, out)
+            export.save_glb(found, out, character or ())
             console.print(f"{out}: {len(found)} people")
         case ".bvh":
             if person is None or not 0 <= person < len(found):

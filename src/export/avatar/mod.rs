@@ -1,0 +1,103 @@
+//! Somebody's own character: a skinned humanoid from a GLB file, which plays people of a crowd.
+//!
+//! The joints are told by [`match_rig`], the rest pose may be a T-pose, an A-pose or anything upright, of any size and
+//! facing anywhere. Meshes, skins, materials and pictures come along as they are; the character's own animations do not.
+
+mod graft;
+mod play;
+mod read;
+
+use std::path::Path;
+
+use glam::{Quat, Vec3};
+use gltf_json::Root;
+
+use super::actor::{Bone, Dress};
+use crate::motion::JOINT_COUNT;
+use crate::motion::retarget::{RestRig, match_rig, rest_turns};
+use crate::{Error, Result};
+use read::Parts;
+
+/// A character made ready to play people.
+#[derive(Debug)]
+pub struct Avatar {
+    /// The file's JSON and binary chunk.
+    json: Root,
+    data: Vec<u8>,
+    parts: Parts,
+    /// Its bones; the first one stands for the character's size.
+    bones: Vec<Bone>,
+    /// Global rest transforms of the bones at size 1.
+    rest: Vec<(Vec3, Quat)>,
+    /// The bone that plays each canonical joint.
+    plays: [Option<usize>; JOINT_COUNT],
+    /// `rig_from_canonical` of each canonical joint; see [`rest_turns`].
+    turns: [Quat; JOINT_COUNT],
+    /// Length of thigh and shin together, mean of both legs, in the file's unit.
+    leg: f32,
+    /// Height of the ankles over the soles, in the file's unit.
+    ankle: f32,
+}
+
+/// An avatar's meshes in a file in the making.
+pub(super) struct Graft {
+    /// Skinned meshes.
+    pub dresses: Vec<Dress>,
+    /// The bones with their stiff parts.
+    bones: Vec<Bone>,
+}
+
+pub(super) fn bad(place: impl Into<String>, problem: impl Into<String>) -> Error {
+    Error::invalid("character", place, problem)
+}
+
+impl Avatar {
+    /// Reads a character from a `.glb` file.
+    ///
+    /// # Errors
+    /// As [`Self::open`]; or the file cannot be read.
+    pub fn load(path: &Path) -> Result<Self> {
+        let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
+        Self::open(&bytes).map_err(|e| e.in_file(path))
+    }
+
+    /// A character from the bytes of a GLB file.
+    ///
+    /// # Errors
+    /// Not a whole GLB with its own data, no skinned mesh, joints that are scaled unevenly, or no humanoid: names the
+    /// joints that are missing.
+    pub fn open(bytes: &[u8]) -> Result<Self> {
+        let (json, data) = read::open(bytes)?;
+        let parts = Parts::of(&json)?;
+        let bones = parts.bones(&json)?;
+        let rest = read::globals(&bones);
+        let names = parts.names(&json);
+        // Bone 0 is the size, which is no joint of theirs.
+        let places: Vec<Vec3> = rest[1..].iter().map(|r| r.0).collect();
+        let parents = bones[1..].iter().map(|b| b.parent.and_then(|p| p.checked_sub(1))).collect();
+        let rig = RestRig::new(names, parents, places)?;
+        let found = match_rig(&rig)?;
+        let turns = rest_turns(&rig, &found);
+        let plays = found.joints.map(|joint| joint.map(|j| j + 1));
+        let mut avatar = Self { json, data, parts, bones, rest, plays, turns, leg: 0.0, ankle: 0.0 };
+        avatar.measure()?;
+        Ok(avatar)
+    }
+
+    /// Finds out how long its legs are and how high its ankles.
+    fn measure(&mut self) -> Result<()> {
+        let leg = play::LEGS.map(|[up, low, foot]| {
+            let at = |j: usize| self.plays[j].map_or(Vec3::NAN, |b| self.rest[b].0);
+            at(up).distance(at(low)) + at(low).distance(at(foot))
+        });
+        self.leg = 0.5 * (leg[0] + leg[1]);
+        if !(self.leg > 1e-6 && self.leg.is_finite()) {
+            return Err(bad("skeleton", format!("expected legs with a length, found {}", self.leg)));
+        }
+        let up = self.turns[0] * Vec3::Y;
+        let ankles = play::LEGS.map(|[_, _, foot]| self.plays[foot].map_or(f32::NAN, |b| self.rest[b].0.dot(up)));
+        let sole = read::lowest(&self.json, &self.data, &self.parts, &self.bones, up)?;
+        self.ankle = (0.5 * (ankles[0] + ankles[1]) - sole).clamp(0.0, 0.5 * self.leg);
+        Ok(())
+    }
+}
