@@ -245,11 +245,17 @@ def write_samples(folder: AnyPath, seed: int = 1) -> list[str]: ...
 def load_clip(
     path: AnyPath,
     *,
+    preset: str | None = None,
     metres_per_unit: float | None = None,
     fps: float | None = None,
-    drop_first_frames: int = 0,
-    restore_thorax: bool = False,
+    drop_first_frames: int | None = None,
+    restore_thorax: bool | None = None,
+    rig: str | None = None,
+    character: str | int | None = None,
 ) -> Clip: ...
+def import_presets() -> list[tuple[str, str]]: ...
+def check_take(clips: list[Clip]) -> list[tuple[str, bool]]: ...
+def take_distances(clips: list[Clip]) -> list[tuple[int, int, float, float]]: ...
 def cut_patches(folder: AnyPath, captures: AnyPath | None = None) -> PatchSet: ...
 def tile(
     scene: Scene,
