@@ -51,16 +51,18 @@ pub fn limit_of(joint: usize) -> Option<JointLimit> {
         LEFT_UP_LEG => limit(Vec3::NEG_Y, ROUND_Y, [-140.0, 50.0], [-50.0, 75.0], [-70.0, 70.0]),
         // A hinge: knees bend backwards only.
         LEFT_LEG => limit(Vec3::NEG_Y, ROUND_Y, [-10.0, 160.0], [-20.0, 20.0], [-50.0, 50.0]),
-        LEFT_FOOT => limit(Vec3::Z, ROUND_Z, [-50.0, 75.0], [-50.0, 50.0], [-50.0, 50.0]),
-        LEFT_TOE => limit(Vec3::Z, ROUND_Z, [-80.0, 60.0], [-20.0, 20.0], [-25.0, 25.0]),
-        SPINE | SPINE1 | SPINE2 => limit(Vec3::Y, ROUND_Y, [-45.0, 60.0], [-40.0, 40.0], [-45.0, 45.0]),
-        NECK | HEAD => limit(Vec3::Y, ROUND_Y, [-60.0, 60.0], [-50.0, 50.0], [-75.0, 75.0]),
+        LEFT_FOOT => limit(Vec3::Z, ROUND_Z, [-75.0, 75.0], [-65.0, 65.0], [-50.0, 50.0]),
+        LEFT_TOE => limit(Vec3::Z, ROUND_Z, [-95.0, 60.0], [-35.0, 35.0], [-35.0, 35.0]),
+        SPINE => limit(Vec3::Y, ROUND_Y, [-45.0, 100.0], [-40.0, 40.0], [-45.0, 45.0]),
+        SPINE1 | SPINE2 => limit(Vec3::Y, ROUND_Y, [-45.0, 60.0], [-40.0, 40.0], [-45.0, 45.0]),
+        NECK | HEAD => limit(Vec3::Y, ROUND_Y, [-70.0, 90.0], [-55.0, 55.0], [-75.0, 75.0]),
         // About y: a positive turn carries the left arm, which points along +x, backwards; about z, upwards.
         LEFT_SHOULDER => limit(Vec3::X, ROUND_X, [-50.0, 40.0], [-35.0, 55.0], [-40.0, 40.0]),
-        LEFT_ARM => limit(Vec3::X, ROUND_X, [-150.0, 80.0], [-110.0, 120.0], [-130.0, 130.0]),
-        // A hinge: the left forearm bends forwards, about -y; how the arm was rolled at rest is not known better.
-        LEFT_FORE_ARM => limit(Vec3::X, ROUND_X, [-165.0, 20.0], [-60.0, 60.0], [-120.0, 120.0]),
-        LEFT_HAND => limit(Vec3::X, ROUND_X, [-60.0, 60.0], [-95.0, 95.0], [-100.0, 100.0]),
+        LEFT_ARM => limit(Vec3::X, ROUND_X, [-150.0, 90.0], [-115.0, 120.0], [-135.0, 135.0]),
+        // A hinge, but how the arm is rolled at rest differs between rigs: the left forearm bends forwards (about -y)
+        // or, palms up, upwards (about +z), never back or down.
+        LEFT_FORE_ARM => limit(Vec3::X, ROUND_X, [-165.0, 20.0], [-40.0, 165.0], [-120.0, 120.0]),
+        LEFT_HAND => limit(Vec3::X, ROUND_X, [-75.0, 75.0], [-95.0, 95.0], [-110.0, 110.0]),
         _ => return None,
     };
     Some(if left == joint { of_left } else { mirrored(of_left) })

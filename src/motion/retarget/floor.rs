@@ -100,6 +100,8 @@ pub(super) fn lift_toe(ball: Vec3, toe: Quat) -> Quat {
     if down <= may {
         return Quat::IDENTITY;
     }
+    // About the level axis across the toe, wherever the foot has rolled to.
+    let across = (toe * tip).cross(Vec3::Y).try_normalize().unwrap_or(toe * Vec3::NEG_X);
     let pitch = |drop: f32| (drop / tip.length()).min(1.0).asin();
-    Quat::from_rotation_x(pitch(may) - pitch(down))
+    Quat::from_axis_angle(toe.inverse() * across, pitch(down) - pitch(may)).normalize()
 }
