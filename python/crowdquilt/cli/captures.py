@@ -56,7 +56,9 @@ def inspect_file(
     restore_thorax: Annotated[
         bool | None, typer.Option(help="Put back the bone that cgspeed's CMU files lost.", show_default=False)
     ] = None,
-    rig: Annotated[Path | None, typer.Option(help="File that says which joint is which (hips = 'Pelvis', ...).")] = None,
+    rig: Annotated[
+        Path | None, typer.Option(help="File that says which joint is which (hips = 'Pelvis', ...).")
+    ] = None,
     character: Annotated[str | None, typer.Option(help="One of several people in the file: number or name.")] = None,
 ) -> None:
     """Tell what a file holds and what looks wrong with it; of several captures, whether they can be one take."""
@@ -72,6 +74,16 @@ def inspect_file(
         tell(found)
 
 
+def readable(value: Any) -> Any:
+    """The worst of something as figure, joint and time; times to hundredths; all else as it is."""
+    if isinstance(value, tuple):
+        figure, joint, secs = value
+        return f"{figure:.1f} ({joint} at {secs:.2f} s)"
+    if isinstance(value, list) and all(isinstance(v, float) for v in value):
+        return ", ".join(f"{v:.2f}" for v in value) or "none"
+    return value
+
+
 def tell(found: dict[str, Any]) -> None:
     """Print what was found, the warnings last."""
     warnings, people = found.pop("warnings", []), found.pop("people", [])
@@ -83,7 +95,7 @@ def tell(found: dict[str, Any]) -> None:
         near, far = apart["nearest_m"], apart["farthest_m"]
         console.print(f"{escape(a)} and {escape(b)}: {near:.2f} to {far:.2f} m from each other")
     if not people:
-        console.print(facts(found))
+        console.print(facts({name: readable(value) for name, value in found.items()}))
     for warning in warnings:
         console.print(f"[yellow]warning[/yellow] {escape(warning)}", soft_wrap=True)
 
