@@ -1,5 +1,4 @@
-"""A public reader (bvhio) finds every joint of our BVH files where they should be, and the validator likes the same clips
-as GLB.
+"""A public reader (bvhio) finds every joint of our BVH files where it should be; the validator likes the clips as GLB.
 
 Needs the files that `cargo test --test formats` leaves behind: each sample as BVH and GLB, read back there to within
 0.1 mm.
