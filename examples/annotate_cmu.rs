@@ -184,11 +184,11 @@ impl Index {
             let import = ImportOptions {
                 metres_per_unit: text("metres_per_unit").parse().ok(),
                 fps: text("fps_true").parse().ok(),
-                drop_first_frames: text("drop_first_frames").parse().unwrap_or(0),
-                restore_thorax: ["cmu-mb", "cmu-max"].iter().any(|family| text("skeleton").starts_with(family)),
+                drop_first_frames: text("drop_first_frames").parse().ok(),
+                restore_thorax: Some(["cmu-mb", "cmu-max"].iter().any(|family| text("skeleton").starts_with(family))),
                 ..Default::default()
             };
-            rows.insert(text("take"), TakePerson { file: text("file"), import });
+            rows.insert(text("take"), TakePerson { file: text("file"), import, ..Default::default() });
         }
         Ok(Self { rows })
     }

@@ -68,8 +68,12 @@ fn amc_and_bvh_of_one_capture_agree() {
     let Some(folder) = mocap() else { return };
     let amc = load(&folder.join("asfamc/02_01.amc"), ImportOptions::default());
     let unit = Some(0.0564444);
-    let repairs =
-        ImportOptions { metres_per_unit: unit, drop_first_frames: 1, restore_thorax: true, ..Default::default() };
+    let repairs = ImportOptions {
+        metres_per_unit: unit,
+        drop_first_frames: Some(1),
+        restore_thorax: Some(true),
+        ..Default::default()
+    };
     let bvh = load(&folder.join("bvh/02_01.bvh"), repairs);
     assert_eq!(amc.frames(), bvh.frames());
     assert!((amc.fps - bvh.fps).abs() < 0.01);

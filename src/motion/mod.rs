@@ -2,6 +2,7 @@
 
 pub mod asfamc;
 mod body;
+mod build;
 pub mod bvh;
 mod clip;
 pub mod contacts;
@@ -15,14 +16,21 @@ mod nodes;
 mod path;
 pub mod plants;
 pub mod pose;
+pub mod presets;
+pub mod quality;
 mod rate;
 pub mod retarget;
 mod skeleton;
+pub mod symptoms;
 pub mod take;
 #[cfg(test)]
 pub(crate) mod testing;
+pub mod together;
+
+pub(crate) use build::{ANKLE_HEIGHT, BuildRows};
 
 pub use body::{BODY_CAPSULES, BodyCapsule, BodyPart, body_capsules};
+pub use build::{Build, Flesh, Proportions};
 pub use clip::Clip;
 pub use mirror::motion as mirror;
 pub use path::{Foot, Motion, MotionPath, Plant};

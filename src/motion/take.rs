@@ -12,14 +12,25 @@ use crate::{Error, Result};
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ImportOptions {
+    /// Name of a set of repairs for well-known files, e.g. `cmu-mb` (see [`super::presets`]); the options below override
+    /// it one by one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub preset: Option<String>,
     /// Metres per unit of the file's lengths; by default guessed from the standing height.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub metres_per_unit: Option<f32>,
     /// True frames per second, where the header is wrong.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub fps: Option<f32>,
-    /// Leading frames to drop (T-poses).
-    pub drop_first_frames: u32,
-    /// Put back the thorax bone that cgspeed's MotionBuilder conversion lost.
-    pub restore_thorax: bool,
+    /// Leading frames to drop (T-poses); default none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drop_first_frames: Option<u32>,
+    /// Put back the thorax bone that cgspeed's MotionBuilder conversion lost; default no.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restore_thorax: Option<bool>,
+    /// A rig file that says which joint is which (see [`super::retarget::rigfile`]), beside the capture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rig: Option<String>,
     /// Which character of a file of several (FBX, glTF), by name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub character: Option<String>,
@@ -32,7 +43,7 @@ pub struct ImportOptions {
 }
 
 /// One person of a take.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TakePerson {
     /// Capture file, relative to the take file (or to the capture folder given beside it).
@@ -40,6 +51,43 @@ pub struct TakePerson {
     /// Repairs.
     #[serde(default)]
     pub import: ImportOptions,
+    /// Which person of a file that holds several: number (from 0) or name; not needed where it holds one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub character: Option<Character>,
+    /// Where and when this capture's origin is in the take.
+    #[serde(default, skip_serializing_if = "Offset::is_none")]
+    pub offset: Offset,
+}
+
+/// A person of a capture file that holds several.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(untagged)]
+pub enum Character {
+    /// By number, from 0.
+    Index(usize),
+    /// By name.
+    Name(String),
+}
+
+/// How a capture is moved into its take: first turned about the vertical, then moved over the ground. For people who
+/// were captured apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Offset {
+    /// When in the take the capture begins, seconds; where it is negative, its beginning is cut off.
+    pub time: f32,
+    /// Moved along x, metres (of the capture, before it is scaled to the canonical body).
+    pub x: f32,
+    /// Moved along z, metres.
+    pub z: f32,
+    /// Turned, degrees, counter-clockwise from above (from +z towards +x).
+    pub heading_deg: f32,
+}
+
+impl Offset {
+    fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// A foot plant, in seconds of the take.

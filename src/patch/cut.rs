@@ -7,10 +7,11 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec2;
 
+use super::file::filed_rotation;
 use super::mirror::{add_mirrored, find_or_add};
 use super::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};
 use crate::motion::take::{TakeContact, TakeFile, TakePatch, TakeRole};
-use crate::motion::{FPS, Motion, Plant, import, retarget};
+use crate::motion::{FPS, Motion, Plant, retarget, together};
 use crate::{Error, Result};
 
 /// How takes are cut.
@@ -54,9 +55,17 @@ pub fn cut(takes: &[PathBuf], options: &CutOptions) -> Result<PatchSet> {
     if options.mirror {
         add_mirrored(&mut set);
     }
+    round(&mut set);
     match set.validate().into_iter().next() {
         Some(problem) => Err(problem),
         None => Ok(set),
+    }
+}
+
+/// Rounds rotations to what a file keeps, so that a set tiles alike before and after it was saved.
+fn round(set: &mut PatchSet) {
+    for fragment in set.kinds.iter_mut().flat_map(|k| &mut k.fragments) {
+        fragment.motion.rotations.iter_mut().for_each(|q| *q = filed_rotation(*q));
     }
 }
 
@@ -108,7 +117,7 @@ pub fn load_take(path: &Path, take: &TakeFile, options: &CutOptions) -> Result<V
         let elsewhere = options.captures.as_ref().map(|c| c.join(file)).filter(|p| p.exists());
         elsewhere.unwrap_or_else(|| folder.join(file))
     };
-    let clips = take.people.iter().map(|p| import::load(&locate(&p.file), &p.import)).collect::<Result<Vec<_>>>()?;
+    let clips = together::load(take, locate)?;
     let mut motions = retarget::take(&clips).map_err(|e| match e {
         Error::Invalid { origin, place, problem } => {
             Error::invalid(path.display().to_string(), format!("capture {origin}: {place}"), problem)

@@ -9,8 +9,7 @@ use super::path::Path;
 use super::perform::{perform, plants};
 use crate::motion::BodyPart;
 use crate::motion::take::{
-    ImportOptions, TakeContact, TakeFile, TakeHold, TakePatch, TakePerson, TakePlant, TakePort, TakeProp, TakeRole,
-    Touch,
+    TakeContact, TakeFile, TakeHold, TakePatch, TakePerson, TakePlant, TakePort, TakeProp, TakeRole, Touch,
 };
 
 /// Size of the box that is carried: width between the hands, height, depth (m).
@@ -76,7 +75,7 @@ impl Scene {
             let stem = format!("{}-{}", self.name, (b'a' + person as u8) as char);
             let mut rng = ChaCha8Rng::seed_from_u64(seed ^ fnv(&stem));
             clips.push(perform(actor, person, &paths, end, &stem, &mut rng));
-            people.push(TakePerson { file: format!("{stem}.bvh"), import: ImportOptions::default() });
+            people.push(TakePerson { file: format!("{stem}.bvh"), ..Default::default() });
             all_plants.extend(plants(actor, end).into_iter().map(|(foot, begin, end)| TakePlant {
                 person,
                 foot,

@@ -8,6 +8,7 @@ use std::path::Path;
 pub use format::Format;
 pub use repair::{guess_unit, repair, standing_height};
 
+use super::retarget::rigfile::RigFile;
 use super::take::ImportOptions;
 use super::{Clip, asfamc, bvh, fbx, gltf};
 use crate::{Error, Result};
@@ -49,6 +50,7 @@ pub fn load(path: &Path, options: &ImportOptions) -> Result<Clip> {
 /// # Errors
 /// As [`load`], except that several characters are welcome.
 pub fn load_all(path: &Path, options: &ImportOptions) -> Result<Vec<Clip>> {
+    let options = &options.resolved()?;
     let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
     let capture = read(path, &bytes, options)?;
     finish(path, capture, options).map_err(|e| e.in_file(path))
@@ -110,6 +112,9 @@ fn finish(path: &Path, capture: Capture, options: &ImportOptions) -> Result<Vec<
     }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     for clip in &mut clips {
+        if let Some(name) = &options.rig {
+            RigFile::find(name, path)?.apply(&mut clip.skeleton)?;
+        }
         clip.name = if several { format!("{stem}.{}", clip.name) } else { stem.to_string() };
     }
     clips.into_iter().map(|clip| repair(clip, &with_unit(options, metres_per_unit))).collect()

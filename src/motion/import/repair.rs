@@ -11,6 +11,7 @@ use crate::{Error, Result};
 /// # Errors
 /// An option that does not fit the clip.
 pub fn repair(mut clip: Clip, options: &ImportOptions) -> Result<Clip> {
+    let options = &options.resolved()?;
     let bad = |option: &str, problem: String| Error::invalid(clip.name.clone(), format!("import.{option}"), problem);
     let positive = |option: &str, value: Option<f32>| match value {
         Some(v) if !(v.is_finite() && v > 0.0) => Err(bad(option, format!("expected a positive number, found {v}"))),
@@ -21,7 +22,7 @@ pub fn repair(mut clip: Clip, options: &ImportOptions) -> Result<Clip> {
     if let Some(slow) = fps.filter(|&fps| fps < bvh::MIN_FPS) {
         return Err(bad("fps", format!("expected at least {} per second, found {slow}", bvh::MIN_FPS)));
     }
-    let drop = options.drop_first_frames as usize;
+    let drop = options.drop_first_frames.unwrap_or(0) as usize;
     if drop >= clip.frames() {
         return Err(bad("drop_first_frames", format!("expected fewer than {} frames, found {drop}", clip.frames())));
     }
@@ -29,7 +30,7 @@ pub fn repair(mut clip: Clip, options: &ImportOptions) -> Result<Clip> {
     clip.root.drain(..drop);
     clip.rotations.drain(..drop * joints);
     clip.fps = fps.unwrap_or(clip.fps);
-    if options.restore_thorax {
+    if options.restore_thorax == Some(true) {
         restore_thorax(&mut clip)?;
     }
     let unit = match unit {
@@ -139,16 +140,22 @@ mod tests {
             let found = repair(standing(1.0), &options).unwrap_err().to_string();
             assert!(found.contains(text), "{found}");
         };
-        says(ImportOptions { drop_first_frames: 5, ..Default::default() }, "import.drop_first_frames: expected fewer");
+        says(
+            ImportOptions { drop_first_frames: Some(5), ..Default::default() },
+            "import.drop_first_frames: expected fewer",
+        );
         says(ImportOptions { fps: Some(0.0), ..Default::default() }, "import.fps: expected a positive");
         says(ImportOptions { fps: Some(0.001), ..Default::default() }, "import.fps: expected at least 1");
         says(ImportOptions { metres_per_unit: Some(f32::NAN), ..Default::default() }, "import.metres_per_unit");
-        says(ImportOptions { restore_thorax: true, ..Default::default() }, "import.restore_thorax: expected a chest");
+        says(
+            ImportOptions { restore_thorax: Some(true), ..Default::default() },
+            "import.restore_thorax: expected a chest",
+        );
     }
 
     #[test]
     fn leading_frames_go_and_the_rate_changes() {
-        let options = ImportOptions { drop_first_frames: 3, fps: Some(60.0), ..Default::default() };
+        let options = ImportOptions { drop_first_frames: Some(3), fps: Some(60.0), ..Default::default() };
         let clip = repair(standing(1.0), &options).unwrap();
         assert_eq!((clip.frames(), clip.rotations.len(), clip.fps), (2, 2 * JOINT_COUNT, 60.0));
     }

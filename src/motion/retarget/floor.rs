@@ -38,7 +38,7 @@ pub(super) fn settle(clip: &mut Clip, toes: bool) {
 fn level_sole(clip: &mut Clip, foot: usize) {
     let (ankles, balls) = (clip.trajectory(foot), clip.trajectory(foot + 1));
     let speeds = [&ankles, &balls].map(|points| plants::speeds(points, clip.fps));
-    let lowest = balls.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+    let lowest = lowest(balls.iter().map(|p| p.y).collect());
     let pitch = |offset: Vec3| f32::atan2(-offset.y, Vec3::new(offset.x, 0.0, offset.z).length());
     let stands = |&f: &usize| speeds.iter().all(|s| s[f] < STANDING) && balls[f].y < lowest + 0.15;
     let mut pitches: Vec<f32> = (0..clip.frames()).filter(stands).map(|f| pitch(balls[f] - ankles[f])).collect();
@@ -58,20 +58,27 @@ fn level_sole(clip: &mut Clip, foot: usize) {
 /// Height of the balls of the feet while they stand: the lower quartile over all frames in which one hardly moves
 /// (feet on steps or lifted and held are above it); where none stands, the lowest point.
 fn floor_height(clip: &Clip) -> f32 {
-    let (mut standing, mut lowest) = (Vec::new(), f32::INFINITY);
+    let (mut standing, mut all) = (Vec::new(), Vec::new());
     for ball in [LEFT_TOE, RIGHT_TOE] {
         let points = clip.trajectory(ball);
         for (p, speed) in points.iter().zip(plants::speeds(&points, clip.fps)) {
-            lowest = lowest.min(p.y);
+            all.push(p.y);
             if speed < STANDING {
                 standing.push(p.y);
             }
         }
     }
+    let lowest = lowest(all);
     // A foot held in the air may be still for long: only what is near the lowest point can be on the floor.
     standing.retain(|&y| y < lowest + 0.15);
     standing.sort_by(f32::total_cmp);
     standing.get(standing.len() / 4).copied().unwrap_or(lowest)
+}
+
+/// The lowest of many heights, but for the lowest fiftieth: a frame that is out of place does not dig the floor.
+pub(crate) fn lowest(mut heights: Vec<f32>) -> f32 {
+    heights.sort_by(f32::total_cmp);
+    heights.get(heights.len() / 50).copied().unwrap_or(f32::INFINITY)
 }
 
 /// Lifts the toes against the foot where the foot's pitch would push them through the floor.

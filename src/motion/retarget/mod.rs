@@ -1,6 +1,7 @@
 //! Retargeting: a capture on its own rig becomes motion on the canonical skeleton.
 //!
-//! 1. `Rig`: joints by name, bones by direction, so that limbs point the same way in space.
+//! 1. `Rig`: joints by name and hierarchy ([`match_rig`]), bones by direction ([`rest_turns`]), so that limbs point
+//!    the same way in space.
 //! 2. Root: the point between the hip joints, scaled by the ratio of the legs' lengths, so that steps fit the legs;
 //!    people of one take share one scale on the ground, so that they still meet.
 //! 3. Floor: shifted so that the planted ball of the foot is 0.02 m above it.
@@ -8,12 +9,23 @@
 //! 5. Feet: planted feet are detected and pinned.
 
 pub mod build;
+mod families;
 mod feet;
 mod floor;
+mod guess;
 mod names;
+mod rest;
 mod rig;
 #[cfg(test)]
+mod rig_tests;
+pub mod rigfile;
+#[cfg(test)]
 mod tests;
+
+pub(crate) use floor::lowest;
+pub use names::{RigMatch, match_rig};
+pub use rest::RestRig;
+pub use rig::rest_turns;
 
 use glam::{Quat, Vec3};
 
@@ -29,7 +41,7 @@ const CANONICAL_LEG: f32 = 0.83;
 /// One person's capture (in metres, see [`super::import`]) as motion on the canonical skeleton, foot plants detected.
 ///
 /// # Errors
-/// The rig is of no known family (names the joints that are missing) or the clip has fewer than two frames.
+/// The rig is none of a person that can be told (names the joints that are missing) or the clip has fewer than two frames.
 pub fn to_canonical(clip: &Clip) -> Result<Motion> {
     take(std::slice::from_ref(clip)).map(|mut motions| motions.remove(0))
 }
