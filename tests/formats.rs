@@ -1,25 +1,15 @@
 //! Captures in one format say what they say in another.
 //!
-//! The real ones are in `../shared/mocap`, or where `CROWDQUILT_MOCAP` says; tests of them say so and pass without.
+//! Tests of real captures say so and pass where there are none.
 
 mod fixture;
+mod mocap;
 
 use std::path::{Path, PathBuf};
 
 use crowdquilt::motion::take::ImportOptions;
 use crowdquilt::motion::{Clip, JOINT_COUNT, import};
 use glam::{Quat, Vec3};
-
-/// The folder of captures, if it is there.
-fn mocap() -> Option<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folder = std::env::var_os("CROWDQUILT_MOCAP").map_or_else(|| root.join("../shared/mocap"), PathBuf::from);
-    if folder.join("index.csv").is_file() {
-        return Some(folder);
-    }
-    eprintln!("skipped: no captures at {} (set CROWDQUILT_MOCAP to a folder with index.csv)", folder.display());
-    None
-}
 
 fn load(path: &Path, options: ImportOptions) -> Clip {
     import::load(path, &options).unwrap_or_else(|e| panic!("{e}"))
@@ -65,7 +55,7 @@ const TWINS: [(&str, &str); 25] = [
 
 #[test]
 fn amc_and_bvh_of_one_capture_agree() {
-    let Some(folder) = mocap() else { return };
+    let Some(folder) = mocap::folder() else { return };
     let amc = load(&folder.join("asfamc/02_01.amc"), ImportOptions::default());
     let unit = Some(0.0564444);
     let repairs = ImportOptions {
@@ -141,7 +131,7 @@ fn samples_come_back_from_every_file() {
 
 #[test]
 fn captures_come_back_from_every_file() {
-    let Some(folder) = mocap() else { return };
+    let Some(folder) = mocap::folder() else { return };
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder.join("bvh")).unwrap().map(|e| e.unwrap().path()).collect();
     files.sort();
     for file in files {
