@@ -1,6 +1,6 @@
 //! The pipeline in numbered steps: takes in, a checked crowd out.
 //!
-//! `cargo run --release --example pipeline -- [SEED] [TAKES] [CAPTURES]`
+//! `cargo run --release --example pipeline -- [SEED] [TAKES] [CAPTURES] [SCENE]`
 
 use std::path::Path;
 
@@ -18,9 +18,10 @@ fn main() -> crowdquilt::Result<()> {
     }
     // 2. Cut motion patches out of the takes.
     let set = patch::cut_folder(&takes, args.get(3).map(Path::new))?;
-    // 3. Tile the demo's scene.
+    // 3. Tile a scene, the demo's unless there is another.
+    let scene = args.get(4).map_or_else(|| Ok(Scene::demo()), |path| Scene::load(Path::new(path)))?;
     let options = Options { seed, ..Options::default() };
-    let outcome = tile(&Scene::demo(), &set, &options, &mut |p| {
+    let outcome = tile(&scene, &set, &options, &mut |p| {
         let together = p.multi_person_share * 100.0;
         eprint!("\r{:?}: {} patches, {} characters, {together:.1} % together ", p.phase, p.patches, p.characters);
         true

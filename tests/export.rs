@@ -4,7 +4,7 @@
 mod fixture;
 
 use crowdquilt::export::{clip, glb, look};
-use crowdquilt::motion::{FPS, JOINT_COUNT};
+use crowdquilt::motion::{Build, FPS, JOINT_COUNT};
 use crowdquilt::stage::Crowd;
 use glam::{Quat, Vec3};
 use serde_json::Value;
@@ -19,6 +19,9 @@ fn crowd() -> Crowd {
     let early = &mut crowd.characters[fixture::SHAKER];
     early.root.truncate(80);
     early.rotations.truncate(80 * JOINT_COUNT);
+    for (character, build) in crowd.characters.iter_mut().zip(Build::catalogue().iter().skip(1)) {
+        character.build = build[0].clone();
+    }
     crowd
 }
 
@@ -91,9 +94,9 @@ fn sample(times: &[f32], at: f32) -> (usize, usize, f32) {
 fn joints_are_where_the_crowd_has_them() {
     let crowd = crowd();
     let glb = Glb::open(&glb(&crowd));
-    let skeleton = crowdquilt::motion::canonical();
     let (mut expected, mut found) = (Vec::new(), Vec::new());
     for (p, person) in crowd.characters.iter().enumerate() {
+        let skeleton = person.skeleton();
         for frame in [person.begin, person.begin + 17, person.end()] {
             let secs = frame as f32 / FPS;
             let (times, values, _) = glb.channel(&format!("person_{p}_hips"), "translation").unwrap();
@@ -148,18 +151,29 @@ fn absent_people_are_scaled_away() {
 }
 
 #[test]
-fn people_share_their_vertices_and_not_their_looks() {
-    let glb = Glb::open(&glb(&crowd()));
+fn people_share_vertices_by_build_and_not_their_looks() {
+    let mut crowd = crowd();
+    crowd.characters.iter_mut().for_each(|c| c.build = Build::canonical());
+    let tall = Build::catalogue()[1][0].clone();
+    crowd.characters[1].build = tall.clone();
+    crowd.characters[3].build = tall;
+    let glb = Glb::open(&glb(&crowd));
     let meshes = glb.json["meshes"].as_array().unwrap();
-    assert_eq!(meshes.len(), 4);
-    let attributes = &meshes[0]["primitives"][0]["attributes"];
-    assert!(meshes.iter().flat_map(|m| m["primitives"].as_array().unwrap()).all(|p| &p["attributes"] == attributes));
-    let materials = |m: &Value| -> Vec<Value> {
-        m["primitives"].as_array().unwrap().iter().map(|p| p["material"].clone()).collect()
+    let mesh_of =
+        |p: usize| &meshes[glb.json["nodes"][glb.node(&format!("person_{p}_body"))]["mesh"].as_u64().unwrap() as usize];
+    let attributes = |p: usize| mesh_of(p)["primitives"][0]["attributes"].clone();
+    assert_eq!(attributes(0), attributes(2));
+    assert_eq!(attributes(1), attributes(3));
+    assert_ne!(attributes(0)["POSITION"], attributes(1)["POSITION"]);
+    assert_eq!(attributes(0)["WEIGHTS_0"], attributes(1)["WEIGHTS_0"]);
+    let materials = |p: usize| -> Vec<Value> {
+        mesh_of(p)["primitives"].as_array().unwrap().iter().map(|p| p["material"].clone()).collect()
     };
-    assert_ne!(materials(&meshes[0]), materials(&meshes[1]));
+    assert_ne!(materials(0), materials(1));
     assert_ne!(look(0), look(1));
     assert_eq!(glb.json["scenes"][0]["nodes"].as_array().unwrap().len(), 8, "a joint root and a mesh for each of four");
+    let knee = &glb.json["nodes"][glb.node("person_1_left_leg")]["translation"][1];
+    assert!((knee.as_f64().unwrap() + 0.42 * 1.085).abs() < 1e-4, "{knee}");
 }
 
 #[test]
@@ -218,4 +232,44 @@ fn a_bvh_file_read_back_has_the_joints_where_the_crowd_has_them() {
         }
     }
     assert!(crowdquilt::export::bvh(&crowd, 9).is_err());
+}
+
+/// The crowd file with its header changed.
+fn with_header(bytes: &[u8], change: impl FnOnce(&mut Value)) -> Vec<u8> {
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let mut header: Value = serde_json::from_slice(&bytes[24..24 + length]).unwrap();
+    change(&mut header);
+    let mut json = serde_json::to_vec(&header).unwrap();
+    json.resize(json.len().next_multiple_of(8), b' ');
+    let mut out = bytes[..24].to_vec();
+    out[12..16].copy_from_slice(&(json.len() as u32).to_le_bytes());
+    out.extend_from_slice(&json);
+    out.extend_from_slice(&bytes[24 + length..]);
+    out
+}
+
+#[test]
+fn builds_are_kept_in_the_crowd_file_and_files_without_them_are_of_canonical_people() {
+    let mut crowd = crowd();
+    for (character, build) in crowd.characters.iter_mut().zip(Build::catalogue()) {
+        character.build = build[0].clone();
+    }
+    let bytes = crowd.to_bytes();
+    let read = Crowd::from_bytes(&bytes).unwrap();
+    assert_eq!(read.builds().0.len(), 4);
+    assert!(read.characters.iter().zip(&crowd.characters).all(|(a, b)| a.build == b.build));
+    let old = with_header(&bytes, |h| {
+        h.as_object_mut().unwrap().remove("builds");
+        h["characters"]
+            .as_array_mut()
+            .unwrap()
+            .iter_mut()
+            .for_each(|c| drop(c.as_object_mut().unwrap().remove("build")));
+    });
+    assert!(Crowd::from_bytes(&old).unwrap().characters.iter().all(|c| c.build == Build::canonical()));
+    let told = |change: &dyn Fn(&mut Value)| Crowd::from_bytes(&with_header(&bytes, change)).unwrap_err().to_string();
+    let missing = told(&|h| h["characters"][1]["build"] = 9.into());
+    assert!(missing.contains("character 1") && missing.contains("below 4, found 9"), "{missing}");
+    let bent = told(&|h| h["builds"][2]["offsets"][2][1] = (-9.0).into());
+    assert!(bent.contains("left_leg") && bent.contains("slight"), "{bent}");
 }

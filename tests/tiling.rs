@@ -8,6 +8,7 @@ use crowdquilt::check::{self, check};
 use crowdquilt::geom::Polygon;
 use crowdquilt::patch::{PatchSet, cut_folder};
 use crowdquilt::samples;
+use crowdquilt::stage::Crowd;
 use crowdquilt::tiling::{Options, Outcome, Scene, Status, tile};
 use glam::Vec2;
 
@@ -115,13 +116,28 @@ fn real_captures_make_a_perfect_crowd() {
     };
     let takes = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cmu");
     let set = cut_folder(&takes, Some(&captures)).unwrap();
-    let mut scene = Scene::demo();
-    scene.characters = 56;
-    scene.interaction = 0.1;
-    let outcome = run(&scene, &set, 1);
-    println!("{:?} in {:.2} s, {:?}", outcome.status, outcome.solve_secs, check::summary(&outcome.crowd));
-    assert_clean(&outcome);
-    assert!(outcome.crowd.characters.len() >= 50);
+    let scene = Scene::load(&takes.join("plaza.toml")).unwrap();
+    for seed in 1..=5 {
+        let outcome = run(&scene, &set, seed);
+        println!(
+            "seed {seed}: {:?} in {:.2} s, {:?}",
+            outcome.status,
+            outcome.solve_secs,
+            check::summary(&outcome.crowd)
+        );
+        assert_clean(&outcome);
+        assert_eq!(outcome.status, Status::Perfect, "seed {seed}");
+        assert!(outcome.crowd.characters.len() >= 50);
+    }
+}
+
+#[test]
+fn files_keep_sets_and_crowds_bit_by_bit() {
+    let set = sample_set();
+    assert!(PatchSet::from_bytes(&set.to_bytes()).unwrap() == set, "the set changes when it is saved");
+    let scene = Scene { characters: 12, interaction: 0.1, duration_secs: 8.0, ..Scene::demo() };
+    let crowd = run(&scene, &set, 3).crowd;
+    assert!(Crowd::from_bytes(&crowd.to_bytes()).unwrap() == crowd, "the crowd changes when it is saved");
 }
 
 fn mocap() -> Option<PathBuf> {

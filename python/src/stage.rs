@@ -76,7 +76,7 @@ impl Crowd {
         let (mut pose, mut globals) = ([Quat::IDENTITY; JOINT_COUNT], Vec::new());
         for (index, character) in self.0.characters.iter().enumerate() {
             if let Some(root) = character.sample(secs, &mut pose) {
-                canonical().globals(root, &pose, &mut globals);
+                character.skeleton().globals(root, &pose, &mut globals);
                 each(index as u32, &globals);
             }
         }
@@ -195,6 +195,22 @@ impl Crowd {
         let mut globals = Vec::new();
         character.globals((frame - character.begin) as usize, &mut globals);
         points3(py, &globals.iter().map(|(position, _)| *position).collect::<Vec<_>>())
+    }
+
+    /// Name of a person's build: their bones' lengths and their girth.
+    fn build(&self, person: usize) -> PyResult<String> {
+        self.person(person).map(|c| c.build.name.clone())
+    }
+
+    /// A person's height from the soles to the crown, metres.
+    fn stature(&self, person: usize) -> PyResult<f32> {
+        self.person(person).map(|c| c.build.stature())
+    }
+
+    /// (joints, 3): a person's joints as offsets from their parents in the rest pose, metres.
+    fn offsets<'py>(&self, py: Python<'py>, person: usize) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let offsets: Vec<Vec3> = self.person(person)?.skeleton().joints.iter().map(|j| j.offset).collect();
+        points3(py, &offsets)
     }
 
     /// The patches a person goes through, in order.

@@ -2,10 +2,11 @@
 
 use glam::{Quat, Vec3};
 
+use super::depth::axis_distance;
 use super::limits::Limits;
 use super::part::Part;
 use super::report::{Row, Worst};
-use crate::geom::wrap_angle;
+use crate::geom::{Capsule, wrap_angle};
 use crate::motion::{BodyPart, FPS, joint};
 use crate::patch::Touch;
 use crate::stage::Crowd;
@@ -84,12 +85,12 @@ fn distances(crowd: &Crowd, sides: [(&Part, BodyPart); 2], first: u32, last: u32
     let seen = |frame: u32| sides.iter().all(|(p, _)| crowd.characters[p.character].present(frame));
     for frame in frames.map(|f| f as u32).filter(|&f| seen(f)) {
         let [p, q] = sides.map(|(part, touching)| final_place(crowd, part, touching, frame));
-        let excess = p.distance(q) - captured_distance(sides, frame);
+        let excess = axis_distance(&p, &q) - captured_distance(sides, frame);
         worst.offer(excess as f64, || format!("frame {frame}, {} with character {}", a.name(), b.character));
     }
 }
 
-fn final_place(crowd: &Crowd, part: &Part, touching: BodyPart, frame: u32) -> Vec3 {
+fn final_place(crowd: &Crowd, part: &Part, touching: BodyPart, frame: u32) -> Capsule {
     let character = &crowd.characters[part.character];
     let mut globals = Vec::new();
     character.globals((frame - character.begin) as usize, &mut globals);
@@ -107,19 +108,21 @@ fn captured_distance(sides: [(&Part, BodyPart); 2], frame: u32) -> f32 {
             part.source.motion.globals((clock.clamp(begin, end) - begin) as usize, &mut globals);
             place_of(touching, &globals)
         });
-        p.distance(q)
+        axis_distance(&p, &q)
     };
     let t = clock.fract() as f32;
     at(clock.floor() as u32) * (1.0 - t) + at(clock.ceil() as u32) * t
 }
 
-/// Where a part of the body touches: the palm is 9 cm along the hand, the head's middle 11 cm above its joint.
-fn place_of(part: BodyPart, globals: &[(Vec3, Quat)]) -> Vec3 {
-    let (joint, offset) = match part {
-        BodyPart::LeftHand => (joint::LEFT_HAND, Vec3::new(0.09, 0.0, 0.0)),
-        BodyPart::RightHand => (joint::RIGHT_HAND, Vec3::new(-0.09, 0.0, 0.0)),
-        BodyPart::Torso => (joint::SPINE2, Vec3::ZERO),
-        BodyPart::Head => (joint::HEAD, Vec3::new(0.0, 0.11, 0.01)),
+/// Where a part of the body touches: the palm is 9 cm along the hand, the head's middle 11 cm above its joint; a torso
+/// is touched anywhere along the back, since people of different heights do not reach the same place.
+fn place_of(part: BodyPart, globals: &[(Vec3, Quat)]) -> Capsule {
+    let at = |joint: usize, offset: Vec3| globals[joint].0 + globals[joint].1 * offset;
+    let (a, b) = match part {
+        BodyPart::Torso => (at(joint::SPINE, Vec3::ZERO), at(joint::NECK, Vec3::ZERO)),
+        BodyPart::LeftHand => [at(joint::LEFT_HAND, Vec3::new(0.09, 0.0, 0.0)); 2].into(),
+        BodyPart::RightHand => [at(joint::RIGHT_HAND, Vec3::new(-0.09, 0.0, 0.0)); 2].into(),
+        BodyPart::Head => [at(joint::HEAD, Vec3::new(0.0, 0.11, 0.01)); 2].into(),
     };
-    globals[joint].0 + globals[joint].1 * offset
+    Capsule { a, b, radius: 0.0 }
 }

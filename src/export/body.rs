@@ -1,105 +1,215 @@
-//! The mannequin as glTF: shared vertices, one mesh per look.
+//! Mannequins as glTF: vertices once per build, triangles once per cut of clothes, a mesh per person's look.
 
-use glam::Vec3;
+use std::collections::BTreeMap;
+
+use glam::{Mat4, Vec3};
 use gltf_json::accessor::{ComponentType, Type};
 use gltf_json::buffer::Target;
 use gltf_json::material::{PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
 use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
-use gltf_json::{Accessor, Index, Material as GltfMaterial, Mesh, Root, Value};
+use gltf_json::{Accessor, Index, Material, Mesh, Root, Value};
 
+use super::actor::{Bone, Dress};
 use super::buffer::Stream;
-use super::look::{LOOKS, look};
-use super::mannequin::{Material, mannequin};
+use super::look::{Look, Region, look};
+use super::mannequin::{mannequin, rest};
+use crate::motion::{Build, JOINT_COUNT};
 
-/// Buffer views of the vertices: positions, normals, joints, weights, indices.
-pub(super) const VIEWS: u32 = 5;
+type Attributes = BTreeMap<Checked<Semantic>, Index<Accessor>>;
 
-type Attributes = std::collections::BTreeMap<Checked<Semantic>, Index<Accessor>>;
+/// What a material is like besides its colour: name and roughness.
+type Cloth = (&'static str, f32);
 
-/// Writes the mannequin's vertices once and a mesh for each of the first `people` people's looks. The mesh of
-/// person p is number `p % LOOKS`.
-pub(super) fn meshes(root: &mut Root, binary: &mut Vec<u8>, people: usize) -> Vec<Index<Mesh>> {
-    let body = mannequin();
-    let attributes = attributes(root, binary);
-    let mut stream = Stream::new(4, Some(Target::ElementArrayBuffer), None);
-    let indices = body.triangles.each_ref().map(|triangles| {
-        let flat: &[u16] = bytemuck::cast_slice(triangles);
-        stream.accessor(root, flat, ComponentType::U16, Type::Scalar)
-    });
-    stream.finish(root, binary);
-    (0..people.min(LOOKS)).map(|person| mesh(root, person, &attributes, &indices)).collect()
+/// The mannequins of a file in the making.
+pub(super) struct Wardrobe {
+    /// Vertices of each build.
+    attributes: Vec<Attributes>,
+    /// Inverse bind matrices of each build.
+    binds: Vec<Index<Accessor>>,
+    /// The bones of each build.
+    bones: Vec<Vec<Bone>>,
+    /// Triangles by the regions they cover.
+    cuts: BTreeMap<Vec<Region>, Index<Accessor>>,
+    /// Meshes by build and look.
+    meshes: BTreeMap<(usize, Look), Index<Mesh>>,
 }
 
-fn attributes(root: &mut Root, binary: &mut Vec<u8>) -> Attributes {
-    let body = mannequin();
-    let mut out = Attributes::new();
-    let mut add =
-        |view: u32, semantic: Semantic, stride: usize, bytes: &dyn Fn(&mut Stream, &mut Root) -> Index<Accessor>| {
-            let mut stream = Stream::new(view, Some(Target::ArrayBuffer), Some(stride));
-            let accessor = bytes(&mut stream, root);
-            out.insert(Checked::Valid(semantic), accessor);
-            stream.finish(root, binary);
+impl Wardrobe {
+    /// Writes what people of `builds` with the numbers `people` need.
+    pub(super) fn new(
+        root: &mut Root,
+        binary: &mut Vec<u8>,
+        builds: &[impl AsRef<Build>],
+        people: &[(usize, usize)],
+    ) -> Self {
+        let builds: Vec<&Build> = builds.iter().map(AsRef::as_ref).collect();
+        let attributes = attributes(root, binary, &builds);
+        let binds = binds(root, binary, &builds);
+        let bones = builds.iter().map(|b| bones(b)).collect();
+        let cuts = cuts(root, binary, people.iter().map(|&(person, _)| look(person)));
+        let mut wardrobe = Self { attributes, binds, bones, cuts, meshes: BTreeMap::new() };
+        for &(person, build) in people {
+            wardrobe.sew(root, build, look(person));
+        }
+        wardrobe
+    }
+
+    /// The bones of a build.
+    pub(super) fn bones(&self, build: usize) -> &[Bone] {
+        &self.bones[build]
+    }
+
+    /// Mesh and skin of a person.
+    pub(super) fn dress(&self, person: usize, build: usize) -> Dress {
+        let (mesh, bind) = (self.meshes[&(build, look(person))], self.binds[build]);
+        Dress { mesh, bind, joints: (0..JOINT_COUNT).collect() }
+    }
+
+    fn sew(&mut self, root: &mut Root, build: usize, look: Look) {
+        if self.meshes.contains_key(&(build, look)) {
+            return;
+        }
+        let primitives = pieces(&look).into_iter().map(|((color, cloth), regions)| Primitive {
+            attributes: self.attributes[build].clone(),
+            indices: Some(self.cuts[&regions]),
+            material: Some(material(root, color, cloth)),
+            mode: Checked::Valid(Mode::Triangles),
+            targets: None,
+            extensions: None,
+            extras: Default::default(),
+        });
+        let primitives = primitives.collect();
+        let name = Some(format!("mannequin_{}", self.meshes.len()));
+        let mesh = root.push(Mesh { primitives, name, weights: None, extensions: None, extras: Default::default() });
+        self.meshes.insert((build, look), mesh);
+    }
+}
+
+/// What a look consists of: regions of the same colour and cloth are one piece.
+fn pieces(look: &Look) -> Vec<((u32, Cloth), Vec<Region>)> {
+    let mut pieces: Vec<((u32, Cloth), Vec<Region>)> = Vec::new();
+    let skin = look[Region::Skin as usize];
+    for region in Region::ALL {
+        let Some(color) = look[region as usize].filter(|_| !mannequin().triangles[region as usize].is_empty()) else {
+            continue;
         };
-    add(0, Semantic::Positions, 12, &|s, root| {
-        let index = s.accessor(root, &body.positions, ComponentType::F32, Type::Vec3);
-        let (low, high) = bounds(&body.positions);
+        let of = (color, cloth(region, Some(color) == skin));
+        match pieces.iter_mut().find(|(key, _)| *key == of) {
+            Some((_, regions)) => regions.push(region),
+            None => pieces.push((of, vec![region])),
+        }
+    }
+    pieces
+}
+
+fn cloth(region: Region, bare: bool) -> Cloth {
+    match region {
+        Region::Skin => ("skin", 0.55),
+        Region::Sleeve | Region::Shin | Region::Trousers if bare => ("skin", 0.55),
+        Region::Hair | Region::LongHair | Region::Bun | Region::Visor => ("hair", 0.6),
+        Region::Shirt | Region::Sleeve => ("shirt", 0.85),
+        Region::Trousers | Region::Shin | Region::Skirt | Region::Seat => ("trousers", 0.85),
+        Region::Shoe | Region::Sole => ("shoes", 0.5),
+    }
+}
+
+/// Vertices of each build; joints and weights are the same for all.
+fn attributes(root: &mut Root, binary: &mut Vec<u8>, builds: &[&Build]) -> Vec<Attributes> {
+    let body = mannequin();
+    let grown: Vec<_> = builds.iter().map(|b| body.grown(b)).collect();
+    let mut out = vec![Attributes::new(); builds.len()];
+    let mut stream = Stream::next(root, Some(Target::ArrayBuffer), Some(12));
+    for ((positions, _), out) in grown.iter().zip(&mut out) {
+        let index = stream.accessor(root, positions, ComponentType::F32, Type::Vec3);
+        let (low, high) = bounds(positions);
         let accessor = &mut root.accessors[index.value()];
         (accessor.min, accessor.max) = (Some(low), Some(high));
-        index
-    });
-    add(1, Semantic::Normals, 12, &|s, root| s.accessor(root, &body.normals, ComponentType::F32, Type::Vec3));
+        out.insert(Checked::Valid(Semantic::Positions), index);
+    }
+    stream.finish(root, binary);
+    let mut stream = Stream::next(root, Some(Target::ArrayBuffer), Some(12));
+    for ((_, normals), out) in grown.iter().zip(&mut out) {
+        let index = stream.accessor(root, normals, ComponentType::F32, Type::Vec3);
+        out.insert(Checked::Valid(Semantic::Normals), index);
+    }
+    stream.finish(root, binary);
     let joints: Vec<[u8; 4]> = body.joints.iter().map(|j| j.map(|j| j as u8)).collect();
-    add(2, Semantic::Joints(0), 4, &|s, root| s.accessor(root, &joints, ComponentType::U8, Type::Vec4));
-    add(3, Semantic::Weights(0), 16, &|s, root| s.accessor(root, &body.weights, ComponentType::F32, Type::Vec4));
+    let mut stream = Stream::next(root, Some(Target::ArrayBuffer), Some(4));
+    let joints = stream.accessor(root, &joints, ComponentType::U8, Type::Vec4);
+    stream.finish(root, binary);
+    let mut stream = Stream::next(root, Some(Target::ArrayBuffer), Some(16));
+    let weights = stream.accessor(root, &body.weights, ComponentType::F32, Type::Vec4);
+    stream.finish(root, binary);
+    for out in &mut out {
+        out.insert(Checked::Valid(Semantic::Joints(0)), joints);
+        out.insert(Checked::Valid(Semantic::Weights(0)), weights);
+    }
     out
 }
 
-fn bounds(points: &[Vec3]) -> (Value, Value) {
+pub(super) fn bounds(points: &[Vec3]) -> (Value, Value) {
     let (low, high) = points.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), &p| (a.min(p), b.max(p)));
     (serde_json::json!(low.to_array()), serde_json::json!(high.to_array()))
 }
 
-fn mesh(root: &mut Root, person: usize, attributes: &Attributes, indices: &[Index<Accessor>]) -> Index<Mesh> {
-    let colors = look(person);
-    let primitives = Material::ALL.iter().zip(indices).zip(colors).map(|((&material, &indices), color)| Primitive {
-        attributes: attributes.clone(),
-        indices: Some(indices),
-        material: Some(self::material(root, material, color)),
-        mode: Checked::Valid(Mode::Triangles),
-        targets: None,
-        extensions: None,
-        extras: Default::default(),
-    });
-    let primitives = primitives.collect();
-    root.push(Mesh {
-        primitives,
-        name: Some(format!("mannequin_{person}")),
-        weights: None,
-        extensions: None,
-        extras: Default::default(),
-    })
+/// The rest pose's joints are not turned, so that binding only moves.
+fn binds(root: &mut Root, binary: &mut Vec<u8>, builds: &[&Build]) -> Vec<Index<Accessor>> {
+    let mut stream = Stream::next(root, None, None);
+    let matrices = |b: &&Build| -> Vec<[f32; 16]> {
+        rest(&b.skeleton).into_iter().map(|p| Mat4::from_translation(-p).to_cols_array()).collect()
+    };
+    let accessors =
+        builds.iter().map(|b| stream.accessor(root, &matrices(b), ComponentType::F32, Type::Mat4)).collect();
+    stream.finish(root, binary);
+    accessors
+}
+
+fn bones(build: &Build) -> Vec<Bone> {
+    let bone = |j: &crate::motion::Joint| Bone { parent: j.parent, ..Bone::new(&j.name, j.offset) };
+    build.skeleton.joints.iter().map(bone).collect()
+}
+
+/// Triangles for every piece of clothing that one of the looks has.
+fn cuts(
+    root: &mut Root,
+    binary: &mut Vec<u8>,
+    looks: impl Iterator<Item = Look>,
+) -> BTreeMap<Vec<Region>, Index<Accessor>> {
+    let mut stream = Stream::next(root, Some(Target::ElementArrayBuffer), None);
+    let mut cuts = BTreeMap::new();
+    for (_, regions) in looks.flat_map(|look| pieces(&look)) {
+        let triangles = regions.iter().flat_map(|&r| &mannequin().triangles[r as usize]).flatten();
+        cuts.entry(regions.clone()).or_insert_with(|| {
+            let flat: Vec<u16> = triangles.copied().collect();
+            stream.accessor(root, &flat, ComponentType::U16, Type::Scalar)
+        });
+    }
+    stream.finish(root, binary);
+    cuts
 }
 
 /// The material of that colour; the one that is there already if another look has it too.
-fn material(root: &mut Root, material: Material, [r, g, b]: [f32; 3]) -> Index<GltfMaterial> {
-    let color = [r, g, b, 1.0];
-    let same = |m: &GltfMaterial| {
-        m.pbr_metallic_roughness.base_color_factor.0 == color
-            && m.name.as_deref().is_some_and(|name| name.starts_with(material.name()))
-    };
-    if let Some(i) = root.materials.iter().position(same) {
+fn material(root: &mut Root, color: u32, (cloth, rough): Cloth) -> Index<Material> {
+    let name = format!("{cloth}_{color:06x}");
+    if let Some(i) = root.materials.iter().position(|m| m.name.as_ref() == Some(&name)) {
         return Index::new(i as u32);
     }
-    let rough = [0.85, 0.85, 0.55, 0.6, 0.5][material as usize];
-    root.push(GltfMaterial {
-        name: Some(format!("{}_{}", material.name(), root.materials.len())),
+    let [_, r, g, b] = color.to_be_bytes();
+    root.push(Material {
+        name: Some(name),
         pbr_metallic_roughness: PbrMetallicRoughness {
-            base_color_factor: PbrBaseColorFactor(color),
+            base_color_factor: PbrBaseColorFactor([linear(r), linear(g), linear(b), 1.0]),
             metallic_factor: StrengthFactor(0.0),
             roughness_factor: StrengthFactor(rough),
             ..Default::default()
         },
         ..Default::default()
     })
+}
+
+/// An sRGB byte as a linear fraction.
+fn linear(byte: u8) -> f32 {
+    let v = byte as f32 / 255.0;
+    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }

@@ -19,6 +19,11 @@ impl Stream {
         Self { view, bytes: Vec::new(), target, stride }
     }
 
+    /// The stream of the next buffer view; it must be finished before the one after it.
+    pub(super) fn next(root: &Root, target: Option<Target>, stride: Option<usize>) -> Self {
+        Self::new(root.buffer_views.len() as u32, target, stride)
+    }
+
     /// Appends `values` and an accessor to them. Every element must be a multiple of four bytes.
     pub(super) fn accessor<T: bytemuck::Pod>(
         &mut self,

@@ -1,6 +1,6 @@
 //! One person of a crowd as a clip, the form that motion files are written from.
 
-use crate::motion::{self, Clip, FPS, canonical};
+use crate::motion::{self, Clip, FPS};
 use crate::stage::Crowd;
 use crate::{Error, Result};
 
@@ -18,7 +18,7 @@ pub fn clip(crowd: &Crowd, character: usize) -> Result<Clip> {
     }
     Ok(Clip {
         name: format!("person_{character}"),
-        skeleton: canonical().clone(),
+        skeleton: found.skeleton().clone(),
         fps: FPS,
         root: found.root.clone(),
         rotations: found.rotations.clone(),

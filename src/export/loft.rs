@@ -4,7 +4,7 @@ use std::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::mannequin::Material;
+use super::look::Region;
 
 /// A closed curve around `center`: `u` and `v` are half axes at right angles, `power` 2 is an ellipse, more is boxier.
 #[derive(Clone, Copy)]
@@ -30,19 +30,19 @@ pub(super) struct Binding {
     pub weights: [f32; 4],
 }
 
-/// Vertices and, per material, triangles.
+/// Vertices and, per region, triangles.
 #[derive(Default)]
 pub(super) struct Surface {
     pub positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
     pub bindings: Vec<Binding>,
-    pub triangles: [Vec<[u16; 3]>; Material::COUNT],
+    pub triangles: [Vec<[u16; 3]>; Region::COUNT],
 }
 
 impl Surface {
     /// Adds a closed surface through `rings` of `segments` points, from the point `ends[0]` to the point `ends[1]`.
     /// Rings must turn counter-clockwise about the direction in which they follow each other (u x v points there).
-    pub(super) fn loft(&mut self, material: Material, segments: usize, ends: [Vec3; 2], rings: &[Ring]) -> LoftRange {
+    pub(super) fn loft(&mut self, region: Region, segments: usize, ends: [Vec3; 2], rings: &[Ring]) -> LoftRange {
         let first = self.positions.len();
         let mut faces = Vec::new();
         let at = |ring: usize, i: usize| (first + 1 + ring * segments + i % segments) as u16;
@@ -60,11 +60,21 @@ impl Surface {
                 faces.push([at(r, i), at(r + 1, i + 1), at(r + 1, i)]);
             }
         }
-        self.triangles[material as usize].extend(&faces);
+        self.triangles[region as usize].extend(&faces);
         let range = first..self.positions.len();
         self.normals.resize(range.end, Vec3::ZERO);
         self.bindings.resize(range.end, Binding::default());
         LoftRange { vertices: range, faces }
+    }
+
+    /// Gives those faces of a loft whose corners are all where `inside` says to another region.
+    pub(super) fn repaint(&mut self, from: Region, to: Region, inside: impl Fn(Vec3) -> bool) {
+        let faces = std::mem::take(&mut self.triangles[from as usize]);
+        let of = |face: &[u16; 3]| face.iter().all(|&v| inside(self.positions[v as usize]));
+        let (moved, kept) = faces.into_iter().partition(of);
+        self.triangles[from as usize] = kept;
+        let moved: Vec<[u16; 3]> = moved;
+        self.triangles[to as usize].extend(moved);
     }
 
     /// Smooth normals of a loft; call it once the positions are final.

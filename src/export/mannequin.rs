@@ -3,38 +3,13 @@
 use std::f32::consts::TAU;
 use std::sync::LazyLock;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use super::loft::{Ring, Surface};
+use super::look::Region;
 use super::shape::*;
 use super::skinning::{Part, bind, mirrored};
-
-/// What a part of the surface is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Material {
-    /// Torso and sleeves.
-    Shirt,
-    /// Pelvis and legs.
-    Trousers,
-    /// Face, neck, forearms, hands.
-    Skin,
-    /// Hair.
-    Hair,
-    /// Feet.
-    Shoes,
-}
-
-impl Material {
-    /// Number of materials.
-    pub const COUNT: usize = 5;
-    /// All materials, in the order of [`Mannequin::triangles`].
-    pub const ALL: [Self; Self::COUNT] = [Self::Shirt, Self::Trousers, Self::Skin, Self::Hair, Self::Shoes];
-
-    /// Name, as in exported files.
-    pub fn name(self) -> &'static str {
-        ["shirt", "trousers", "skin", "hair", "shoes"][self as usize]
-    }
-}
+use crate::motion::{Build, JOINT_COUNT, Skeleton, canonical};
 
 /// A skinned triangle mesh of a person in the rest pose of the canonical skeleton.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,8 +22,8 @@ pub struct Mannequin {
     pub joints: Vec<[u16; 4]>,
     /// Their weights; they sum to 1.
     pub weights: Vec<[f32; 4]>,
-    /// Triangles per [`Material`], counter-clockwise seen from outside.
-    pub triangles: [Vec<[u16; 3]>; Material::COUNT],
+    /// Triangles per [`Region`], counter-clockwise seen from outside.
+    pub triangles: [Vec<[u16; 3]>; Region::COUNT],
 }
 
 /// The mannequin, built once.
@@ -57,23 +32,53 @@ pub fn mannequin() -> &'static Mannequin {
     &MANNEQUIN
 }
 
+impl Mannequin {
+    /// Vertex positions and unit normals of a person of `build` in the rest pose of their own skeleton.
+    pub fn grown(&self, build: &Build) -> (Vec<Vec3>, Vec<Vec3>) {
+        let (from, to) = (rest(canonical()), rest(&build.skeleton));
+        let grow = |v: usize| {
+            let (mut place, mut normal) = (Vec3::ZERO, Vec3::ZERO);
+            for (&joint, &weight) in self.joints[v].iter().zip(&self.weights[v]) {
+                let (j, flesh) = (joint as usize, &build.flesh[joint as usize]);
+                let forward = Vec3::Z * flesh.forward;
+                place += weight * (to[j] + flesh.scale * (self.positions[v] - from[j]) + forward);
+                normal += weight * self.normals[v] / flesh.scale;
+            }
+            (place, normal.normalize_or(Vec3::Y))
+        };
+        (0..self.positions.len()).map(grow).unzip()
+    }
+}
+
+/// Global positions of the joints in the rest pose, metres.
+pub(super) fn rest(skeleton: &Skeleton) -> Vec<Vec3> {
+    let mut globals = Vec::new();
+    skeleton.globals(skeleton.joints[0].offset, &[Quat::IDENTITY; JOINT_COUNT], &mut globals);
+    globals.into_iter().map(|g| g.0).collect()
+}
+
 const HAIR_SEGMENTS: usize = 16;
 
 fn build() -> Mannequin {
     let mut body = Body(Surface::default());
-    body.upright(Material::Trousers, Part::Torso, 14, 0.0, 2.3, PELVIS);
-    body.upright(Material::Shirt, Part::Torso, 14, 0.0, 2.35, SHIRT);
-    body.upright(Material::Skin, Part::Neck, 8, 0.0, 2.0, NECK);
-    body.upright(Material::Skin, Part::Head, 14, 0.0, 2.1, HEAD);
-    body.upright(Material::Skin, Part::Head, 6, 0.0, 2.0, NOSE);
+    body.upright(Region::Seat, Part::Torso, 14, 0.0, 2.3, PELVIS);
+    body.upright(Region::Shirt, Part::Torso, 14, 0.0, 2.35, SHIRT);
+    body.upright(Region::Skin, Part::Neck, 8, 0.0, 2.0, NECK);
+    body.upright(Region::Skin, Part::Head, 14, 0.0, 2.1, HEAD);
+    body.upright(Region::Skin, Part::Head, 6, 0.0, 2.0, NOSE);
     body.hair();
+    body.upright(Region::LongHair, Part::Head, 12, 0.0, 2.1, LONG_HAIR);
+    body.upright(Region::Bun, Part::Head, 8, 0.0, 2.0, BUN);
+    body.upright(Region::Visor, Part::Head, 12, 0.0, 2.2, VISOR);
+    body.upright(Region::Skirt, Part::Skirt, 16, 0.0, 2.2, SKIRT);
     body.both_sides(|b| b.ear());
-    body.both_sides(|b| b.upright(Material::Trousers, Part::Leg, 10, 0.09, 2.1, LEG));
-    body.both_sides(|b| b.sideways(Material::Shirt, Part::Arm, 10, SLEEVE));
-    body.both_sides(|b| b.sideways(Material::Skin, Part::Arm, 8, ARM));
-    body.both_sides(|b| b.sideways(Material::Skin, Part::Hand, 8, PALM));
+    body.both_sides(|b| b.upright(Region::Trousers, Part::Leg, 10, 0.09, 2.1, LEG));
+    body.both_sides(|b| b.sideways(Region::Shirt, Part::Arm, 10, SLEEVE));
+    body.both_sides(|b| b.sideways(Region::Sleeve, Part::Arm, 8, ARM));
+    body.both_sides(|b| b.sideways(Region::Skin, Part::Hand, 8, PALM));
     body.both_sides(Body::fingers);
     body.both_sides(Body::shoe);
+    body.0.repaint(Region::Trousers, Region::Shin, |p| p.y < 0.58);
     let Surface { positions, normals, bindings, triangles } = body.0;
     Mannequin {
         positions,
@@ -88,8 +93,8 @@ struct Body(Surface);
 
 impl Body {
     /// Adds a loft, its normals and its bindings.
-    fn add(&mut self, material: Material, part: Part, segments: usize, ends: [Vec3; 2], rings: &[Ring]) {
-        let loft = self.0.loft(material, segments, ends, rings);
+    fn add(&mut self, region: Region, part: Part, segments: usize, ends: [Vec3; 2], rings: &[Ring]) {
+        let loft = self.0.loft(region, segments, ends, rings);
         self.0.smooth(&loft);
         for v in loft.vertices {
             self.0.bindings[v] = bind(part, self.0.positions[v]);
@@ -97,13 +102,13 @@ impl Body {
     }
 
     /// A loft through horizontal slices, from the ground up.
-    fn upright(&mut self, material: Material, part: Part, segments: usize, x: f32, power: f32, slices: Slices) {
+    fn upright(&mut self, region: Region, part: Part, segments: usize, x: f32, power: f32, slices: Slices) {
         let rings: Vec<Ring> = slices.iter().map(|s| slice(x, power, s)).collect();
-        self.add(material, part, segments, [rings[0].center, rings[rings.len() - 1].center], &rings);
+        self.add(region, part, segments, [rings[0].center, rings[rings.len() - 1].center], &rings);
     }
 
     /// A loft along the left arm.
-    fn sideways(&mut self, material: Material, part: Part, segments: usize, lengths: Lengths) {
+    fn sideways(&mut self, region: Region, part: Part, segments: usize, lengths: Lengths) {
         let ring = |&[x, height, depth]: &[f32; 3]| Ring {
             center: Vec3::new(x, 1.395, 0.0),
             u: Vec3::Y * height,
@@ -111,7 +116,7 @@ impl Body {
             power: 2.1,
         };
         let rings: Vec<Ring> = lengths.iter().map(ring).collect();
-        self.add(material, part, segments, [rings[0].center, rings[rings.len() - 1].center], &rings);
+        self.add(region, part, segments, [rings[0].center, rings[rings.len() - 1].center], &rings);
     }
 
     fn fingers(&mut self) {
@@ -133,7 +138,7 @@ impl Body {
         };
         let rings = [(0.0, 0.95), (0.6, 0.98), (0.96, 0.66)].map(ring);
         let tip = rings[2].center + direction * (thickness * 0.35);
-        self.add(Material::Skin, Part::Hand, 5, [from, tip], &rings);
+        self.add(Region::Skin, Part::Hand, 5, [from, tip], &rings);
     }
 
     fn shoe(&mut self) {
@@ -145,7 +150,7 @@ impl Body {
         };
         let rings: Vec<Ring> = SHOE.iter().map(ring).collect();
         let ends = [Vec3::new(0.09, 0.035, -0.070), Vec3::new(0.09, 0.018, 0.202)];
-        self.add(Material::Shoes, Part::Shoe, 10, ends, &rings);
+        self.add(Region::Shoe, Part::Shoe, 10, ends, &rings);
     }
 
     fn ear(&mut self) {
@@ -156,7 +161,7 @@ impl Body {
             power: 2.0,
         };
         let rings = [[1.602, 0.007], [1.616, 0.012], [1.643, 0.015], [1.655, 0.006]].map(ring);
-        self.add(Material::Skin, Part::Head, 6, [rings[0].center, rings[3].center], &rings);
+        self.add(Region::Skin, Part::Head, 6, [rings[0].center, rings[3].center], &rings);
     }
 
     /// A cap a little larger than the head, from the hairline (high in front, low behind) to the crown. Its lowest
@@ -166,7 +171,7 @@ impl Body {
             [(0.0, -0.006), (0.03, 0.006), (0.15, 0.012), (0.35, 0.014), (0.58, 0.014), (0.8, 0.013), (0.95, 0.012)];
         let blank = heights.map(|_| slice(0.0, 2.1, &HEAD[0]));
         let ends = [Vec3::new(0.0, 1.66, 0.0), Vec3::new(0.0, 1.763, 0.0)];
-        let loft = self.0.loft(Material::Hair, HAIR_SEGMENTS, ends, &blank);
+        let loft = self.0.loft(Region::Hair, HAIR_SEGMENTS, ends, &blank);
         for (v, place) in loft.vertices.clone().skip(1).zip(0..heights.len() * HAIR_SEGMENTS) {
             let (climb, lift) = heights[place / HAIR_SEGMENTS];
             let angle = (place % HAIR_SEGMENTS) as f32 / HAIR_SEGMENTS as f32 * TAU;
@@ -224,13 +229,13 @@ fn smooth(t: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::{JOINT_COUNT, joint};
+    use crate::motion::joint;
 
     #[test]
     fn is_small_symmetric_and_as_tall_as_the_skeleton() {
         let m = mannequin();
         let triangles: usize = m.triangles.iter().map(Vec::len).sum();
-        assert!((1500..=3100).contains(&triangles), "{triangles}");
+        assert!((1500..=3800).contains(&triangles), "{triangles}");
         let top = m.positions.iter().map(|p| p.y).fold(f32::MIN, f32::max);
         let bottom = m.positions.iter().map(|p| p.y).fold(f32::MAX, f32::min);
         assert!((1.74..1.78).contains(&top) && bottom.abs() < 0.01, "{bottom} to {top}");
@@ -241,22 +246,44 @@ mod tests {
     }
 
     #[test]
-    fn every_surface_is_closed_and_turned_outward() {
+    fn every_surface_is_closed_and_turned_outward_in_every_build() {
         let m = mannequin();
-        for (material, triangles) in Material::ALL.iter().zip(&m.triangles) {
-            let mut edges = std::collections::BTreeMap::new();
-            let mut volume = 0.0;
-            for &[a, b, c] in triangles {
-                for (from, to) in [(a, b), (b, c), (c, a)] {
-                    *edges.entry((from.min(to), from.max(to))).or_insert(0) += if from < to { 1 } else { -1 };
-                }
-                let [p, q, r] = [a, b, c].map(|v| m.positions[v as usize]);
-                volume += p.dot(q.cross(r)) / 6.0;
-                let normals = [a, b, c].map(|v| m.normals[v as usize]);
-                assert!(normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-4));
+        let mut edges = std::collections::BTreeMap::new();
+        for &[a, b, c] in m.triangles.iter().flatten() {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                *edges.entry((from.min(to), from.max(to))).or_insert(0) += if from < to { 1 } else { -1 };
             }
-            assert!(edges.values().all(|&n| n == 0), "{material:?} has a hole");
-            assert!(volume > 0.0, "{material:?} is inside out: {volume}");
+        }
+        assert!(edges.values().all(|&n| n == 0), "a hole");
+        for build in Build::catalogue().iter().flatten() {
+            let (positions, normals) = m.grown(build);
+            assert!(normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-4));
+            let volume: f32 = m
+                .triangles
+                .iter()
+                .flatten()
+                .map(|t| t.map(|v| positions[v as usize]))
+                .map(|[p, q, r]| p.dot(q.cross(r)) / 6.0)
+                .sum();
+            assert!((0.06..0.18).contains(&volume), "{}: {volume} cubic metres", build.name);
+            for &[a, b, c] in m.triangles.iter().flatten() {
+                let [p, q, r] = [a, b, c].map(|v| positions[v as usize]);
+                let n = (q - p).cross(r - p).normalize_or_zero();
+                assert!(n.dot(normals[a as usize]) > -0.6, "{}: a face turned inside out at {p}", build.name);
+            }
+        }
+    }
+
+    #[test]
+    fn builds_are_as_tall_as_their_bones_and_stand_on_the_floor() {
+        let m = mannequin();
+        let (same, _) = m.grown(&Build::canonical());
+        assert!(same.iter().zip(&m.positions).all(|(a, b)| a.distance(*b) < 1e-5));
+        for build in Build::catalogue().iter().flatten() {
+            let heights: Vec<f32> = m.grown(build).0.iter().map(|p| p.y).collect();
+            let (top, bottom) =
+                (heights.iter().copied().fold(f32::MIN, f32::max), heights.iter().copied().fold(f32::MAX, f32::min));
+            assert!((top - build.stature()).abs() < 0.03 && bottom.abs() < 0.01, "{}: {bottom} to {top}", build.name);
         }
     }
 
@@ -264,13 +291,15 @@ mod tests {
     fn bindings_are_normalised_and_on_their_own_side() {
         let m = mannequin();
         let mut used = [false; JOINT_COUNT];
-        for ((p, joints), weights) in m.positions.iter().zip(&m.joints).zip(&m.weights) {
+        // Both thighs carry the middle of a skirt.
+        let skirt: Vec<u16> = m.triangles[Region::Skirt as usize].iter().flatten().copied().collect();
+        for (v, ((p, joints), weights)) in m.positions.iter().zip(&m.joints).zip(&m.weights).enumerate() {
             assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5);
             for (&j, &w) in joints.iter().zip(weights) {
                 assert!(w > 0.0 || j == 0, "joint {j} without weight");
                 used[j as usize] |= w > 0.0;
                 let side = if joint::mirror(j as usize) == j as usize { 0.0 } else { canonical_x(j as usize) };
-                assert!(w == 0.0 || side * p.x > -0.01, "joint {j} moves {p}");
+                assert!(w == 0.0 || side * p.x > -0.01 || skirt.contains(&(v as u16)), "joint {j} moves {p}");
             }
         }
         assert!(used.iter().all(|&u| u), "{used:?}");

@@ -1,8 +1,10 @@
 //! A finished crowd in the formats of others.
 //!
-//! [`glb`] writes a whole crowd as one binary glTF file with the [`mannequin`] as everybody's body; [`clip`] and
-//! [`bvh`] take one person out; [`clip_glb`] writes a clip on any skeleton.
+//! [`glb`] writes a whole crowd as one binary glTF file, everybody a [`mannequin`] of their own
+//! [build](crate::motion::Build) and [`look`]; [`clip`] and [`bvh`] take one person out; [`clip_glb`] writes a clip on
+//! any skeleton.
 
+mod actor;
 mod body;
 mod buffer;
 mod clip;
@@ -17,5 +19,5 @@ mod skinning;
 pub use clip::{bvh, clip};
 pub use clip_glb::clip_glb;
 pub use glb::glb;
-pub use look::{LOOKS, Look, look};
-pub use mannequin::{Mannequin, Material, mannequin};
+pub use look::{Look, Region, look};
+pub use mannequin::{Mannequin, mannequin};

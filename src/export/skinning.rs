@@ -15,6 +15,7 @@ pub(super) enum Part {
     Hand,
     Leg,
     Shoe,
+    Skirt,
 }
 
 /// The binding of the point `p` of the rest pose.
@@ -28,6 +29,7 @@ pub(super) fn bind(part: Part, p: Vec3) -> Binding {
         }
         Part::Hand => binding(&[(LEFT_HAND, 1.0)]),
         Part::Leg => chain(-p.y, &[(HIPS, -9.0), (LEFT_UP_LEG, -0.88), (LEFT_LEG, -0.485)], 0.05),
+        Part::Skirt => skirt(p),
         Part::Shoe => chain(p.z, &[(LEFT_FOOT, -9.0), (LEFT_TOE, 0.125)], 0.025),
     }
 }
@@ -48,6 +50,12 @@ fn torso(p: Vec3) -> Binding {
     let mut all: Vec<(usize, f32)> = vec![(shoulder, collar)];
     all.extend((0..4).map(|i| (spine.joints[i] as usize, spine.weights[i] * (1.0 - collar))));
     binding(&all)
+}
+
+/// A skirt hangs from the hips and is carried by both thighs, each on its own side.
+fn skirt(p: Vec3) -> Binding {
+    let (legs, left) = (ramp(-p.y, -0.95, -0.78), ramp(p.x, -0.11, 0.11));
+    binding(&[(HIPS, 1.0 - legs), (LEFT_UP_LEG, legs * left), (RIGHT_UP_LEG, legs * (1.0 - left))])
 }
 
 /// Each joint takes over from the one before where `at` passes its knot, over `half` to both sides.

@@ -2,9 +2,11 @@
 
 pub mod asfamc;
 mod body;
+mod build;
 pub mod bvh;
 mod clip;
 pub mod contacts;
+mod fbx;
 pub mod gait;
 mod gltf;
 pub mod ik;
@@ -27,7 +29,10 @@ pub mod take;
 pub(crate) mod testing;
 pub mod together;
 
+pub(crate) use build::{ANKLE_HEIGHT, BuildRows};
+
 pub use body::{BODY_CAPSULES, BodyCapsule, BodyPart, body_capsules};
+pub use build::{Build, Flesh, Proportions};
 pub use clip::Clip;
 pub use mirror::motion as mirror;
 pub use path::{Foot, Motion, MotionPath, Plant};

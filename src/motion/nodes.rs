@@ -52,7 +52,7 @@ pub(crate) struct Tree {
 }
 
 /// Nodes deeper than this are refused, lest what is worked out along the way down fills the memory.
-const DEEPEST: usize = 1000;
+pub(crate) const DEEPEST: usize = 1000;
 
 impl Tree {
     /// # Errors

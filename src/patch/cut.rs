@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec2;
 
+use super::file::filed_rotation;
 use super::mirror::{add_mirrored, find_or_add};
 use super::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};
 use crate::motion::take::{TakeContact, TakeFile, TakePatch, TakeRole};
@@ -54,9 +55,17 @@ pub fn cut(takes: &[PathBuf], options: &CutOptions) -> Result<PatchSet> {
     if options.mirror {
         add_mirrored(&mut set);
     }
+    round(&mut set);
     match set.validate().into_iter().next() {
         Some(problem) => Err(problem),
         None => Ok(set),
+    }
+}
+
+/// Rounds rotations to what a file keeps, so that a set tiles alike before and after it was saved.
+fn round(set: &mut PatchSet) {
+    for fragment in set.kinds.iter_mut().flat_map(|k| &mut k.fragments) {
+        fragment.motion.rotations.iter_mut().for_each(|q| *q = filed_rotation(*q));
     }
 }
 

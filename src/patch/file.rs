@@ -51,6 +51,20 @@ pub(crate) fn unpack_rotation(packed: &[i16]) -> Quat {
     Quat::from_array(std::array::from_fn(|i| packed[i] as f32 / 32767.0)).normalize()
 }
 
+/// The nearest rotation that a file keeps exactly: packed and unpacked it is itself, bit by bit.
+pub(crate) fn filed_rotation(q: Quat) -> Quat {
+    // Normalizing what was rounded can round it elsewhere; that settles within a few steps.
+    let mut packed = pack_rotation(q);
+    for _ in 0..8 {
+        let again = pack_rotation(unpack_rotation(&packed));
+        if again == packed {
+            break;
+        }
+        packed = again;
+    }
+    unpack_rotation(&packed)
+}
+
 impl PatchSet {
     /// The set as the bytes of a patch-set file.
     pub fn to_bytes(&self) -> Vec<u8> {
@@ -236,5 +250,22 @@ impl Arrays {
             entry_group: header.entry_group,
             exit_group: header.exit_group,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn filed_rotations_come_back_bit_by_bit(axis in prop::array::uniform3(-1f32..1.0), angle in 0f32..6.3) {
+            let axis = glam::Vec3::from(axis).try_normalize().unwrap_or(glam::Vec3::X);
+            let q = Quat::from_axis_angle(axis, angle);
+            let filed = filed_rotation(q);
+            prop_assert_eq!(unpack_rotation(&pack_rotation(filed)), filed);
+            prop_assert!(super::super::turn_between(q, filed).to_degrees() < 0.01);
+        }
     }
 }

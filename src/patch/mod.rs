@@ -10,7 +10,7 @@ pub mod propose;
 mod set;
 mod speed;
 
-pub(crate) use file::{pack_rotation, unpack_rotation};
+pub(crate) use file::{filed_rotation, pack_rotation, unpack_rotation};
 pub(crate) use speed::{fastest_turns, turn_between};
 
 pub use cut::{CutOptions, cut, cut_folder, load_take};

@@ -80,7 +80,8 @@ fn pose_at(segment: &Segment, source_frame: f32) -> Pose {
     }
 }
 
-fn ground_at(segment: &Segment, i: usize, t: f32) -> Ground {
+/// The placed path between source frames `i` and `i + 1`.
+pub(super) fn ground_at(segment: &Segment, i: usize, t: f32) -> Ground {
     let (points, headings) = (&segment.placed.points, &segment.placed.headings);
     Ground::new(points[i].lerp(points[i + 1], t), headings[i] * (1.0 - t) + headings[i + 1] * t)
 }

@@ -1,17 +1,13 @@
 //! Planted feet stay where they are: each plant locks the ball of the foot to one place, legs follow by inverse
 //! kinematics, hips come down where a leg would have to be longer than it is.
 
-use glam::{Quat, Vec3};
+use glam::Vec3;
 
-use super::{Body, Segment};
-use crate::motion::ik::two_bone;
+use super::leg::{self, Leg};
+use super::{Body, Segment, smoothstep};
 use crate::motion::joint::{LEFT_FOOT, RIGHT_FOOT};
 use crate::motion::{Foot, JOINT_COUNT, canonical};
 
-/// Largest part of a leg's length that is used, so that knees never lock.
-const LEG_STRETCH: f32 = 0.995;
-/// Most that hips are lowered, metres.
-const MAX_LOWERING: f32 = 0.10;
 /// A foot that falls short of its place by more than this is told, metres.
 const MAX_MISS: f32 = 0.003;
 /// Frames over which hips come down and rise again.
@@ -72,7 +68,7 @@ pub(super) fn lock(segments: &[Segment], body: &mut Body) {
             if shift.length_squared() > 1e-10 {
                 let pose = &mut body.rotations[f * JOINT_COUNT..(f + 1) * JOINT_COUNT];
                 canonical().globals(body.root[f], pose, &mut globals);
-                let missed = move_ankle(pose, &globals, ankle, shift);
+                let missed = leg::plant(pose, &globals, ankle, shift);
                 if missed > MAX_MISS && body.strained.last() != Some(&f) {
                     body.strained.push(f);
                 }
@@ -86,7 +82,7 @@ fn locks(segments: &[Segment], foot: Foot, begin: i32, frames: i32) -> Vec<Lock>
     let mut locks: Vec<Lock> = Vec::new();
     for s in segments {
         for p in s.motion().plants.iter().filter(|p| p.foot == foot) {
-            let at = |source: u32| s.placed.begin as f32 + source as f32 / s.rate() - begin as f32;
+            let at = |source: u32| s.frame_of(source as f32) - begin as f32;
             let (first, last) = (at(p.begin).ceil() as i32, at(p.end).floor() as i32);
             let lock = Lock::new(first.max(0), last.min(frames - 1), s.kind.people() > 1);
             if lock.end < lock.begin {
@@ -145,11 +141,6 @@ fn fill(offsets: &mut [Vec3], from: Option<i32>, to: Option<i32>) {
     }
 }
 
-fn smoothstep(x: f32) -> f32 {
-    let x = x.clamp(0.0, 1.0);
-    x * x * (3.0 - 2.0 * x)
-}
-
 /// How far the hips must come down on each frame for both feet to be in reach, smoothed over time.
 fn lowering(body: &Body, ankles: [usize; 2], offsets: &[Vec<Vec3>; 2]) -> Vec<f32> {
     let n = body.root.len();
@@ -157,14 +148,11 @@ fn lowering(body: &Body, ankles: [usize; 2], offsets: &[Vec<Vec3>; 2]) -> Vec<f3
     let need: Vec<f32> = (0..n)
         .map(|f| {
             body.globals(f, &mut globals);
-            let of_leg = |k: usize| {
-                let (hip, ankle) = (globals[ankles[k] - 2].0, globals[ankles[k]].0 + offsets[k][f]);
-                let reach = leg_length(ankles[k]) * LEG_STRETCH;
-                let across = (ankle - hip).with_y(0.0).length_squared();
-                let height = (reach * reach - across).max(0.0).sqrt();
-                if offsets[k][f] == Vec3::ZERO { 0.0 } else { hip.y - ankle.y - height }
+            let of_leg = |k: usize| match offsets[k][f] {
+                Vec3::ZERO => 0.0,
+                shift => Leg::new(&globals, ankles[k], shift).lowering(),
             };
-            of_leg(0).max(of_leg(1)).clamp(0.0, MAX_LOWERING)
+            of_leg(0).max(of_leg(1))
         })
         .collect();
     if need.iter().all(|&v| v == 0.0) {
@@ -174,24 +162,6 @@ fn lowering(body: &Body, ankles: [usize; 2], offsets: &[Vec<Vec3>; 2]) -> Vec<f3
     let window = |f: usize| f.saturating_sub(LOWERING_FRAMES)..(f + LOWERING_FRAMES + 1).min(n);
     let widest: Vec<f32> = (0..n).map(|f| need[window(f)].iter().copied().fold(0.0, f32::max)).collect();
     (0..n).map(|f| widest[window(f)].iter().sum::<f32>() / window(f).len() as f32).collect()
-}
-
-fn leg_length(ankle: usize) -> f32 {
-    let joints = &canonical().joints;
-    joints[ankle].offset.length() + joints[ankle - 1].offset.length()
-}
-
-/// Moves an ankle by `shift`, the foot keeping its orientation; returns how far it falls short, metres.
-fn move_ankle(pose: &mut [Quat], globals: &[(Vec3, Quat)], ankle: usize, shift: Vec3) -> f32 {
-    let (up, knee) = (ankle - 2, ankle - 1);
-    let pole = globals[up].1 * Vec3::Z;
-    let target = globals[ankle].0 + shift;
-    let (swing, bend, reached) = two_bone(globals[up].0, globals[knee].0, globals[ankle].0, target, pole, 0.9999);
-    let (up_rotation, knee_rotation) = (swing * globals[up].1, swing * bend * globals[knee].1);
-    pose[up] = (globals[0].1.inverse() * up_rotation).normalize();
-    pose[knee] = (up_rotation.inverse() * knee_rotation).normalize();
-    pose[ankle] = (knee_rotation.inverse() * globals[ankle].1).normalize();
-    reached.distance(target)
 }
 
 #[cfg(test)]

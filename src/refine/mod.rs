@@ -3,12 +3,18 @@
 
 mod carry;
 mod feet;
+mod fit;
+mod leg;
+mod touch;
 
 use glam::{Quat, Vec3};
+use rayon::prelude::*;
 
 use crate::motion::{JOINT_COUNT, Motion, canonical};
 use crate::patch::PatchKind;
 use crate::stage::FragmentUse;
+
+pub use fit::{Hold, fit, holds};
 
 /// A fragment in a person's life: what was captured, and how it is placed and timed.
 #[derive(Clone, Copy)]
@@ -30,6 +36,11 @@ impl<'a> Segment<'a> {
         let last = self.motion().len() - 1;
         let at = (frame - self.placed.begin) as f32 * last as f32 / (self.placed.end - self.placed.begin) as f32;
         at.clamp(0.0, last as f32)
+    }
+
+    /// Frame of the crowd (with fraction) that shows a source frame.
+    pub fn frame_of(&self, source_frame: f32) -> f32 {
+        self.placed.begin as f32 + source_frame / self.rate()
     }
 
     /// Source frames per frame of the crowd.
@@ -70,4 +81,17 @@ pub fn refine(segments: &[Segment], last_frame: u32) -> Body {
     let mut body = carry::carry(segments, last_frame);
     feet::lock(segments, &mut body);
     body
+}
+
+/// The final motions of people who act together: each [`refine`]d, then brought to touch again whom they touched.
+/// In parallel over people.
+pub fn refine_all(people: &[Vec<Segment>], last_frame: u32) -> Vec<Body> {
+    let mut bodies: Vec<Body> = people.par_iter().map(|segments| refine(segments, last_frame)).collect();
+    touch::restore(people, &mut bodies);
+    bodies
+}
+
+fn smoothstep(x: f32) -> f32 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
 }

@@ -1,9 +1,11 @@
 //! The finished crowd and its playback.
 
+use std::sync::Arc;
+
 use glam::{Quat, Vec2, Vec3};
 
 use crate::geom::Polygon;
-use crate::motion::{FPS, JOINT_COUNT, canonical};
+use crate::motion::{Build, FPS, JOINT_COUNT, Skeleton};
 use crate::patch::PatchSet;
 
 /// Where and how long the crowd lives.
@@ -46,6 +48,8 @@ pub struct FragmentUse {
 pub struct Character {
     /// First frame of the final motion.
     pub begin: u32,
+    /// Bones and flesh: what the rotations turn.
+    pub build: Arc<Build>,
     /// The fragments in order; each begins where the one before ends.
     pub fragments: Vec<FragmentUse>,
     /// Hips position per frame.
@@ -75,9 +79,14 @@ impl Character {
         &self.rotations[index * JOINT_COUNT..(index + 1) * JOINT_COUNT]
     }
 
+    /// The person's own bones.
+    pub fn skeleton(&self) -> &Skeleton {
+        &self.build.skeleton
+    }
+
     /// Global joint transforms at frame `index` of the person's own motion, into `out`.
     pub fn globals(&self, index: usize, out: &mut Vec<(Vec3, Quat)>) {
-        canonical().globals(self.root[index], self.pose(index), out);
+        self.skeleton().globals(self.root[index], self.pose(index), out);
     }
 
     /// Root position and pose at `secs`, by interpolation; `None` while absent. No allocation, no state.
@@ -110,4 +119,20 @@ pub struct Crowd {
     pub instances: Vec<Instance>,
     /// The people.
     pub characters: Vec<Character>,
+}
+
+impl Crowd {
+    /// The different builds of the people, in order of first appearance, and the index of everybody's own.
+    pub fn builds(&self) -> (Vec<Arc<Build>>, Vec<usize>) {
+        let mut builds: Vec<Arc<Build>> = Vec::new();
+        let mut index_of = |build: &Arc<Build>| {
+            let found = builds.iter().position(|b| Arc::ptr_eq(b, build) || b == build);
+            found.unwrap_or_else(|| {
+                builds.push(build.clone());
+                builds.len() - 1
+            })
+        };
+        let indices = self.characters.iter().map(|c| index_of(&c.build)).collect();
+        (builds, indices)
+    }
 }

@@ -1,20 +1,24 @@
 //! The crowd file (`*.crowd`, magic `CQCROWD`): a [container](crate::container).
 //!
 //! Header: `fps`, `seed`, `skeleton` (joints with name, parent, offset, tip), `domain` (region, obstacles: `points`;
-//! `last_frame`), `instances` (kind), `set` (the patch set's header, see [`crate::patch`]) and `characters`: each has
-//! `begin` (first frame), `frames`, and `fragments` (instance, role, begin, end, `samples` = number of path samples).
+//! `last_frame`), `instances` (kind), `set` (the patch set's header, see [`crate::patch`]), `builds` (name; `offsets`: x, y,
+//! z per joint, which stand in for the skeleton's; `flesh`: how a body's surface around each joint differs from the
+//! canonical body's: scale x, y, z about the joint in the rest pose, shift forward) and `characters`: each has `begin`
+//! (first frame), `frames`, `build` (index), and `fragments` (instance, role, begin, end, `samples` = number of path
+//! samples). Files without builds are of people with the canonical one.
 //!
 //! Arrays, all characters one after the other: `root` f32 x,y,z per frame; `rotations` i16 x,y,z,w per frame and joint
 //! (value / 32767; hips global, others local); `path_points` f32 x,z and `path_headings` f32 per path sample of the
 //! fragments; and the patch set's arrays with the prefix `set_`.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{Quat, Vec2, Vec3};
 
 use super::{Character, Crowd, DomainInfo, FragmentUse, Instance};
 use crate::container::{Reader, Writer, write_whole};
-use crate::motion::{FPS, JOINT_COUNT, Skeleton, canonical};
+use crate::motion::{Build, BuildRows, FPS, JOINT_COUNT, Skeleton, canonical};
 use crate::patch::{PatchSet, pack_rotation, unpack_rotation};
 use crate::{Error, Result};
 
@@ -28,6 +32,8 @@ struct Header {
     skeleton: Skeleton,
     domain: DomainInfo,
     instances: Vec<Instance>,
+    #[serde(default)]
+    builds: Vec<BuildRows>,
     characters: Vec<CharacterHeader>,
     set: serde_json::Value,
 }
@@ -36,6 +42,8 @@ struct Header {
 struct CharacterHeader {
     begin: u32,
     frames: u32,
+    #[serde(default)]
+    build: u32,
     fragments: Vec<FragmentHeader>,
 }
 
@@ -63,13 +71,15 @@ impl Crowd {
         writer.array("path_points", &points);
         writer.array("path_headings", &headings);
         let set = serde_json::to_value(self.set.write_into(&mut writer, "set_")).expect("plain data");
+        let (builds, own) = self.builds();
         let header = Header {
             fps: FPS,
             seed: self.seed,
             skeleton: canonical().clone(),
             domain: self.domain.clone(),
             instances: self.instances.clone(),
-            characters: people().map(character_header).collect(),
+            builds: builds.iter().map(|b| b.to_rows()).collect(),
+            characters: people().zip(own).map(|(c, build)| character_header(c, build as u32)).collect(),
             set,
         };
         writer.finish(MAGIC, VERSION, &header)
@@ -84,6 +94,7 @@ impl Crowd {
         let header: Header = reader.header()?;
         let set = PatchSet::read_embedded(&reader, header.set, "set_")?;
         let mut arrays = Arrays {
+            builds: builds(header.builds)?,
             root: reader.array("root")?,
             rotations: reader.array("rotations")?,
             points: reader.array("path_points")?,
@@ -144,7 +155,15 @@ impl Crowd {
     }
 }
 
-fn character_header(c: &Character) -> CharacterHeader {
+/// The builds that characters refer to.
+fn builds(rows: Vec<BuildRows>) -> Result<Vec<Arc<Build>>> {
+    if rows.is_empty() {
+        return Ok(vec![Build::canonical()]);
+    }
+    rows.into_iter().map(|b| Build::from_rows(b).map(Arc::new)).collect()
+}
+
+fn character_header(c: &Character, build: u32) -> CharacterHeader {
     let fragments = c.fragments.iter().map(|f| FragmentHeader {
         instance: f.instance,
         role: f.role,
@@ -152,10 +171,11 @@ fn character_header(c: &Character) -> CharacterHeader {
         end: f.end,
         samples: f.points.len() as u32,
     });
-    CharacterHeader { begin: c.begin, frames: c.frames() as u32, fragments: fragments.collect() }
+    CharacterHeader { begin: c.begin, frames: c.frames() as u32, build, fragments: fragments.collect() }
 }
 
 struct Arrays {
+    builds: Vec<Arc<Build>>,
     root: Vec<f32>,
     rotations: Vec<i16>,
     points: Vec<f32>,
@@ -167,6 +187,10 @@ struct Arrays {
 impl Arrays {
     fn character(&mut self, index: usize, header: CharacterHeader) -> Result<Character> {
         let beyond = || Error::invalid("crowd", format!("character {index}"), "its frames reach beyond the arrays");
+        let build = self.builds.get(header.build as usize).cloned().ok_or_else(|| {
+            let problem = format!("expected a build below {}, found {}", self.builds.len(), header.build);
+            Error::invalid("crowd", format!("character {index}"), problem)
+        })?;
         let frames = self.frame..self.frame.saturating_add(header.frames as usize);
         let root = self.root.get(frames.start * 3..frames.end * 3).ok_or_else(beyond)?;
         let rotations = self.rotations.get(frames.start * JOINT_COUNT * 4..frames.end * JOINT_COUNT * 4);
@@ -188,6 +212,7 @@ impl Arrays {
         }
         Ok(Character {
             begin: header.begin,
+            build,
             fragments,
             root: root.chunks_exact(3).map(Vec3::from_slice).collect(),
             rotations: rotations.ok_or_else(beyond)?.chunks_exact(4).map(unpack_rotation).collect::<Vec<Quat>>(),

@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 use crate::geom::Capsule;
 use crate::motion::{Motion, body_capsules};
 use crate::patch::PatchKind;
-use crate::refine::{Body, Segment, refine};
+use crate::refine::{Body, Segment, refine_all};
 use crate::stage::FragmentUse;
 
 /// How much deeper than captured the people of a patch may overlap after refinement, metres.
@@ -15,7 +15,7 @@ const ALLOWANCE: f32 = 0.007;
 /// True if refinement keeps the people of `kind` as clear of each other as in the capture, and their feet in reach.
 /// O(pairs x frames).
 pub(super) fn plays_cleanly(kind: &PatchKind) -> bool {
-    let played: Vec<Body> = (0..kind.people()).map(|role| play(kind, role)).collect();
+    let played = play(kind);
     if played.iter().any(|body| !body.strained.is_empty()) {
         return false;
     }
@@ -35,18 +35,26 @@ pub(super) fn plays_cleanly(kind: &PatchKind) -> bool {
     })
 }
 
-fn play(kind: &PatchKind, role: usize) -> Body {
+/// The people of a patch on their own, placed as captured.
+fn play(kind: &PatchKind) -> Vec<Body> {
+    let placed: Vec<FragmentUse> = (0..kind.people()).map(|role| as_captured(kind, role)).collect();
+    let people: Vec<Vec<Segment>> = placed.iter().map(|placed| vec![Segment { kind, placed }]).collect();
+    let last = placed.iter().map(|p| p.end).max().unwrap_or(0);
+    refine_all(&people, last as u32)
+}
+
+fn as_captured(kind: &PatchKind, role: usize) -> FragmentUse {
     let fragment = &kind.fragments[role];
-    let motion: &Motion = &fragment.motion;
-    let placed = FragmentUse {
+    let Motion { path, .. } = &fragment.motion;
+    let begin = fragment.begin as i32;
+    FragmentUse {
         instance: 0,
         role: role as u32,
-        begin: 0,
-        end: motion.len() as i32 - 1,
-        points: motion.path.points.clone(),
-        headings: motion.path.headings.clone(),
-    };
-    refine(&[Segment { kind, placed: &placed }], motion.len() as u32 - 1)
+        begin,
+        end: begin + path.len() as i32 - 1,
+        points: path.points.clone(),
+        headings: path.headings.clone(),
+    }
 }
 
 fn shapes(pose: impl Fn(&mut Vec<(Vec3, Quat)>), globals: &mut Vec<(Vec3, Quat)>) -> Vec<Capsule> {

@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::Scene;
+use super::builds::people;
+use super::domain::Domain;
 use super::library::Library;
 use super::occupancy::{Occupancy, Piece, PieceId};
-use crate::patch::PatchKind;
+use crate::patch::{PatchKind, filed_rotation};
 use crate::refine::Body;
 use crate::stage::{Character, Crowd, DomainInfo, FragmentUse, Instance};
 
@@ -14,8 +16,8 @@ use crate::stage::{Character, Crowd, DomainInfo, FragmentUse, Instance};
 pub(super) struct Chains<'a> {
     /// The patches.
     pub library: &'a Library<'a>,
-    /// Number of ticks.
-    pub horizon: i32,
+    /// Where and when.
+    pub domain: &'a Domain,
     /// The pieces.
     pub occupancy: &'a Occupancy,
     /// A list of pieces per person.
@@ -58,7 +60,7 @@ impl<'a> Chains<'a> {
 /// The fragments of a person that are seen within the domain's time, in order: kind and placement.
 pub(super) fn segments_of<'a>(chains: Chains<'a>, person: usize) -> Vec<(&'a PatchKind, FragmentUse)> {
     let library = chains.library;
-    let seen = chains.pieces(person).filter(|p| p.end > 0 && p.begin < chains.horizon);
+    let seen = chains.pieces(person).filter(|p| p.end > 0 && p.begin < chains.domain.horizon);
     seen.map(|piece| {
         let role = &library.roles[piece.role as usize];
         let placed = FragmentUse {
@@ -79,7 +81,7 @@ pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, bodies: Vec<Body>) 
     let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
     let mut instances = Vec::new();
     let mut characters = Vec::with_capacity(bodies.len());
-    for (person, body) in bodies.into_iter().enumerate() {
+    for (person, (build, body)) in people(chains, bodies, seed).into_iter().enumerate() {
         let mut fragments: Vec<FragmentUse> =
             segments_of(chains, person).into_iter().map(|(_, placed)| placed).collect();
         let roles: BTreeMap<u32, u32> = chains.pieces(person).map(|p| (p.instance, p.role)).collect();
@@ -90,7 +92,10 @@ pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, bodies: Vec<Body>) 
                 instances.len() as u32 - 1
             });
         }
-        characters.push(Character { begin: body.begin, fragments, root: body.root, rotations: body.rotations });
+        let Body { begin, root, rotations, .. } = body;
+        // As a file keeps them: what is checked in memory is what is loaded later.
+        let rotations = rotations.into_iter().map(filed_rotation).collect();
+        characters.push(Character { begin, build, fragments, root, rotations });
     }
     let domain = DomainInfo {
         region: scene.region.clone(),

@@ -63,6 +63,8 @@ const EASY_TURN: f32 = 0.6;
 const MAX_TURN: f32 = std::f32::consts::FRAC_PI_3;
 /// A state this close to a wall leads nowhere.
 const WALL_ROOM: f32 = 0.3;
+/// Steps sideways and back cost this much more than walking ahead: people turn to where they go.
+const ASKEW_WEIGHT: f32 = 0.2;
 /// Below this mean speed a patch counts as standing, m/s.
 const STANDING_SPEED: f32 = 0.25;
 
@@ -292,7 +294,7 @@ fn split(view: View, closing: &Closing, path: &MotionPath, begin: i32, end: i32)
 }
 
 fn step_cost(step: &Move, taste: Taste) -> f32 {
-    let factor = if step.speed < STANDING_SPEED { taste.calm } else { 1.0 };
+    let factor = if step.speed < STANDING_SPEED { taste.calm } else { 1.0 + ASKEW_WEIGHT * step.askew };
     step.ticks as f32 / FPS * factor
 }
 

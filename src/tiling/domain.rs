@@ -69,7 +69,8 @@ impl Domain {
     /// True if a disc certainly lies inside the region and outside the obstacles.
     #[inline]
     pub fn holds(&self, center: Vec2, radius: f32) -> bool {
-        let cell = ((center - self.min) / CELL).round();
+        // The nearest node; casts round towards zero.
+        let cell = (center - self.min) / CELL + 0.5;
         if cell.x < 0.0 || cell.y < 0.0 || cell.x >= self.columns as f32 || cell.y >= self.rows as f32 {
             return false;
         }

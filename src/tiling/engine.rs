@@ -37,6 +37,8 @@ const SWEEP_TICKS: i32 = 30;
 const GENTLE_ROUNDS: usize = 6;
 /// States expanded to mend a fault.
 const MEND_EXPANSIONS: usize = 300;
+/// How often patches of several people that mending cost are made up for.
+const REFILLS: usize = 4;
 /// Rounds of mending.
 const MEND_ROUNDS: usize = 30;
 /// Time between two reports of progress.
@@ -150,7 +152,7 @@ fn engine(
         let share = (wish * (scene.characters as f32 / people as f32)).min(BUSIEST);
         enrich_to(&mut tracks, share, taste, &mut clock, &mut rng);
     }
-    let (bodies, left) = mend_all(&mut tracks, taste, &mut clock, &mut rng);
+    let (bodies, left) = finish(&mut tracks, scene.interaction, taste, &mut clock, &mut rng);
     let status = status(tracks.chains(), scene, left);
     let crowd = bake(tracks.chains(), scene, options.seed, bodies);
     Outcome { crowd, status, danglings: 0, interpenetrations: left, solve_secs: clock.secs() }
@@ -159,7 +161,7 @@ fn engine(
 /// The denser the crowd, the more people rather stand than walk.
 fn calm(scene: &Scene) -> f32 {
     let density = scene.characters as f32 / scene.region.area();
-    (1.8 - density).clamp(0.3, 1.3)
+    (1.58 - density).clamp(0.3, 1.3)
 }
 
 fn state(tracks: &Tracks, phase: Phase) -> Progress {
@@ -209,6 +211,30 @@ fn enrich_to(tracks: &mut Tracks, wish: f32, taste: Taste, clock: &mut Clock, rn
             failures += 1;
         }
     }
+}
+
+/// Mends, and where that cost more patches of several people than it may, puts new ones in and mends again; the bodies
+/// and the number of faults left.
+fn finish(
+    tracks: &mut Tracks,
+    wish: f32,
+    taste: Taste,
+    clock: &mut Clock,
+    rng: &mut ChaCha8Rng,
+) -> (Vec<crate::refine::Body>, usize) {
+    let mut found = mend_all(tracks, taste, clock, rng);
+    for _ in 0..REFILLS {
+        let share = tracks.multi_person_share();
+        if share >= wish || found.1 > 0 {
+            break;
+        }
+        enrich_to(tracks, wish * ABOVE_WISH, taste, clock, rng);
+        if tracks.multi_person_share() <= share {
+            break;
+        }
+        found = mend_all(tracks, taste, clock, rng);
+    }
+    found
 }
 
 /// Tests final bodies and bridges anew until none interpenetrate; the bodies and the number of faults left.

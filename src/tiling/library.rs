@@ -1,5 +1,6 @@
 //! The patch set made ready for planning: everything that depends on the kind alone is computed once here.
 
+use glam::Vec2;
 use rayon::prelude::*;
 
 use super::audition::plays_cleanly;
@@ -61,6 +62,8 @@ pub(super) struct Move {
     pub group: u32,
     /// Mean speed in m/s.
     pub speed: f32,
+    /// How much of the way goes sideways or backwards, 0 to 1.
+    pub askew: f32,
 }
 
 /// One or two single-person roles that can be deformed together between two given ends.
@@ -116,9 +119,9 @@ impl<'a> Library<'a> {
         let groups = set.groups.len();
         let (mut forward, mut backward) = (vec![Vec::new(); groups], vec![Vec::new(); groups]);
         for (i, role) in roles.iter().enumerate().filter(|(_, r)| is_single(r)) {
-            let speed = role.path.points.windows(2).map(|w| w[0].distance(w[1])).sum::<f32>() / role.ticks as f32
-                * crate::motion::FPS;
-            let step = |to, group| Move { role: i as u32, to, ticks: role.ticks, group, speed };
+            let way = role.path.points.windows(2).map(|w| w[0].distance(w[1])).sum::<f32>();
+            let (speed, askew) = (way / role.ticks as f32 * crate::motion::FPS, askew(&role.path));
+            let step = |to, group| Move { role: i as u32, to, ticks: role.ticks, group, speed, askew };
             forward[role.entry_group as usize].push(step(role.exit, role.exit_group));
             backward[role.exit_group as usize].push(step(role.exit.inverse(), role.entry_group));
         }
@@ -188,6 +191,18 @@ fn prepare(set: &PatchSet, kind: u32, role: u32, limits: &Limits, fastest: &[f32
         footprints,
         path,
     }
+}
+
+/// The part of a path's length that leads away from where the body looks: 0 for a walk, 1 for steps sideways or back.
+fn askew(path: &MotionPath) -> f32 {
+    let (mut ahead, mut all) = (0.0, 1e-6);
+    for (w, heading) in path.points.windows(2).zip(&path.headings) {
+        let step = w[1] - w[0];
+        let forward = Vec2::new(heading.sin(), heading.cos());
+        ahead += step.dot(forward).max(0.0);
+        all += step.length();
+    }
+    1.0 - ahead / all
 }
 
 fn longest_step(path: &MotionPath) -> f32 {

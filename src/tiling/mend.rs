@@ -2,6 +2,7 @@
 //! person's track is ripped up and bridged anew.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use glam::{Quat, Vec2, Vec3};
 use rand::RngExt;
@@ -10,13 +11,17 @@ use rayon::prelude::*;
 
 use super::bake::{Chains, segments_of};
 use super::bridge::Taste;
+use super::domain::Domain;
 use super::library::Library;
 use super::tracks::{TrackId, Tracks, Undo, Window};
 use crate::geom::Capsule;
 use crate::motion::{JOINT_COUNT, body_capsules};
-use crate::patch::turn_between;
-use crate::refine::{Body, Segment, refine};
+use crate::patch::{PatchKind, turn_between};
+use crate::refine::{Body, Segment, refine, refine_all};
+use crate::stage::FragmentUse;
 
+/// No body reaches further from its hips than this, metres.
+const REACH: f32 = 1.1;
 /// Bodies whose hips are further apart than this never touch, metres.
 const TOUCHING_HIPS: f32 = 2.2;
 /// Interpenetration that is let pass, metres.
@@ -25,8 +30,12 @@ const TOLERANCE: f32 = 0.005;
 const WINDOW: i32 = 24;
 /// Joints may turn this much faster than in the captures.
 const RUSH: f32 = 1.15;
+/// Neighbours of the piece at fault among which a patch of several people is given up.
+const DISSOLVE_REACH: usize = 3;
 /// Tries per fault.
-const TRIES: i32 = 8;
+const TRIES: i32 = 10;
+/// Ticks around a window over which its stitches may change a body.
+const BLEND_TICKS: i32 = 16;
 
 /// Something wrong with the final bodies: two people interpenetrate, or one moves as nobody can.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,23 +48,26 @@ pub(super) struct Fault {
     pub tick: i32,
 }
 
-/// The final bodies of all people. In parallel over people.
+/// The final bodies of all people.
 pub(super) fn bodies(chains: Chains) -> Vec<Body> {
-    let last_frame = chains.horizon as u32 - 1;
-    (0..chains.lists.len())
-        .into_par_iter()
-        .map(|t| {
-            let uses = segments_of(chains, t);
-            let segments: Vec<_> = uses.iter().map(|(kind, placed)| Segment { kind, placed }).collect();
-            refine(&segments, last_frame)
-        })
-        .collect()
+    let uses: Vec<_> = (0..chains.lists.len()).map(|t| segments_of(chains, t)).collect();
+    let people: Vec<Vec<Segment>> = uses.iter().map(|uses| segments(uses)).collect();
+    refine_all(&people, chains.domain.horizon as u32 - 1)
+}
+
+/// The final body of a person, but for touching others.
+fn body(chains: Chains, track: TrackId) -> Body {
+    refine(&segments(&segments_of(chains, track)), chains.domain.horizon as u32 - 1)
+}
+
+fn segments<'a>(uses: &'a [(&'a PatchKind, FragmentUse)]) -> Vec<Segment<'a>> {
+    uses.iter().map(|(kind, placed)| Segment { kind, placed }).collect()
 }
 
 /// All faults of the final bodies, each at its first tick.
 pub(super) fn faults(chains: Chains, bodies: &[Body]) -> Vec<Fault> {
     let per_tick: Vec<Vec<(TrackId, TrackId)>> =
-        (0..chains.horizon).into_par_iter().map(|tick| touching(chains, bodies, tick)).collect();
+        (0..chains.domain.horizon).into_par_iter().map(|tick| touching(chains, bodies, tick)).collect();
     let mut open: BTreeSet<(TrackId, TrackId)> = BTreeSet::new();
     let mut faults = Vec::new();
     for (tick, pairs) in per_tick.into_iter().enumerate() {
@@ -64,21 +76,40 @@ pub(super) fn faults(chains: Chains, bodies: &[Body]) -> Vec<Fault> {
         open = now;
     }
     let alone = bodies.par_iter().enumerate().map(|(t, body)| {
-        let frame = body.strained.first().copied().into_iter().chain(first_rushed(body, chains.library)).min();
+        let frame = first_unclean(body, chains, 0..body.root.len());
         frame.map(|f| Fault { a: t, b: t, tick: body.begin as i32 + f as i32 })
     });
     faults.extend(alone.collect::<Vec<_>>().into_iter().flatten());
     faults
 }
 
-/// The first frame on which a joint turns, or the hips move, faster than in the captures, with some allowance.
-fn first_rushed(body: &Body, library: &Library) -> Option<usize> {
-    let longest_step = RUSH * library.fastest_step + library.limits.stretch;
-    (1..body.root.len()).find(|&f| {
-        let (before, now) = (body.pose(f - 1), body.pose(f));
-        body.root[f].distance(body.root[f - 1]) > longest_step
-            || (0..JOINT_COUNT).any(|j| turn_between(before[j], now[j]) > RUSH * library.fastest[j])
+/// The first of some frames on which a leg is too short, a joint turns or the hips move faster than in the captures
+/// (with some allowance), or a limb is in a wall.
+fn first_unclean(body: &Body, chains: Chains, mut frames: Range<usize>) -> Option<usize> {
+    frames.find(|&f| {
+        body.strained.binary_search(&f).is_ok()
+            || is_rushed(body, chains.library, f)
+            || is_in_wall(body, chains.domain, f)
     })
+}
+
+fn is_in_wall(body: &Body, domain: &Domain, frame: usize) -> bool {
+    let root = body.root[frame];
+    if domain.holds(Vec2::new(root.x, root.z), REACH) {
+        return false;
+    }
+    let inside = |p: Vec3, radius: f32| domain.holds(Vec2::new(p.x, p.z), radius - TOLERANCE);
+    // Bones are so short that three discs each are as good as the whole.
+    let shapes = capsules(body, frame, &mut Vec::new());
+    !shapes.iter().all(|c| [0.0, 0.5, 1.0].into_iter().all(|t| inside(c.a.lerp(c.b, t), c.radius)))
+}
+
+fn is_rushed(body: &Body, library: &Library, frame: usize) -> bool {
+    let Some(last) = frame.checked_sub(1) else { return false };
+    let longest_step = RUSH * library.fastest_step + library.limits.stretch;
+    let (before, now) = (body.pose(last), body.pose(frame));
+    body.root[frame].distance(body.root[last]) > longest_step
+        || (0..JOINT_COUNT).any(|j| turn_between(before[j], now[j]) > RUSH * library.fastest[j])
 }
 
 /// Bodies of one tick, sorted along x so that near ones are neighbours.
@@ -130,8 +161,8 @@ fn capsules(body: &Body, frame: usize, globals: &mut Vec<(Vec3, Quat)>) -> Vec<C
 pub(super) fn mend(tracks: &mut Tracks, fault: Fault, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
     (0..TRIES).any(|attempt| {
         let track = if rng.random_range(0..2) == 0 { fault.a } else { fault.b };
-        let ticks = WINDOW * (1 + attempt / 2);
-        near(tracks, track, fault.tick, |people| people == 1)
+        let ticks = WINDOW * (1 + attempt);
+        near(tracks, track, fault.tick, 1, |people| people == 1)
             .is_some_and(|at| rebridge(tracks, &[Window { track, from: at, to: at + 1 }], ticks, taste, rng))
     })
 }
@@ -141,7 +172,7 @@ pub(super) fn mend(tracks: &mut Tracks, fault: Fault, taste: Taste, rng: &mut Ch
 pub(super) fn dissolve(tracks: &mut Tracks, fault: Fault, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
     (0..TRIES).any(|attempt| {
         let track = if rng.random_range(0..2) == 0 { fault.a } else { fault.b };
-        let Some(at) = near(tracks, track, fault.tick, |people| people > 1) else { return false };
+        let Some(at) = near(tracks, track, fault.tick, DISSOLVE_REACH, |people| people > 1) else { return false };
         let instance = tracks.piece(tracks.tracks[track][at]).instance;
         let windows: Vec<Window> = (0..tracks.tracks.len())
             .filter_map(|t| {
@@ -153,28 +184,39 @@ pub(super) fn dissolve(tracks: &mut Tracks, fault: Fault, taste: Taste, rng: &mu
     })
 }
 
-/// Index of the piece at `tick`, or of one of its neighbours, whose patch has the wanted number of people.
-fn near(tracks: &Tracks, track: TrackId, tick: i32, wanted: impl Fn(usize) -> bool) -> Option<usize> {
+/// Index of the piece at `tick`, or of the nearest of `reach` neighbours on either side, whose patch has the wanted
+/// number of people.
+fn near(tracks: &Tracks, track: TrackId, tick: i32, reach: usize, wanted: impl Fn(usize) -> bool) -> Option<usize> {
     let pieces = &tracks.tracks[track];
     let at = tracks.index_at(track, tick).min(pieces.len() - 1);
     let distance = |i: &usize| {
         let p = tracks.piece(pieces[*i]);
         (p.begin - tick).max(tick - p.end).max(0)
     };
-    let neighbours = at.saturating_sub(1)..(at + 2).min(pieces.len());
+    let neighbours = at.saturating_sub(reach)..(at + reach + 1).min(pieces.len());
     neighbours.filter(|&i| wanted(tracks.people_of(pieces[i]))).min_by_key(distance)
 }
 
-/// Rips up windows of tracks, widened by `ticks`, and bridges them another way.
+/// Rips up windows of tracks, widened by `ticks`, and bridges them another way, on which everybody moves cleanly.
 fn rebridge(tracks: &mut Tracks, windows: &[Window], ticks: i32, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
     let mut undo = Undo::default();
     let windows: Vec<Window> = windows.iter().map(|&w| tracks.widen(w, ticks)).collect();
+    let spans: Vec<_> =
+        windows.iter().map(|w| (tracks.port(w.track, w.from).tick, tracks.port(w.track, w.to).tick)).collect();
     windows.iter().for_each(|&w| tracks.hide_window(w, &mut undo));
-    if windows.into_iter().all(|w| tracks.bridge_window(w, taste, rng, &mut undo).is_some()) {
+    let done = windows.iter().all(|&w| tracks.bridge_window(w, taste, rng, &mut undo).is_some())
+        && windows.iter().zip(&spans).all(|(w, span)| is_clean(tracks.chains(), w.track, *span));
+    if done {
         tracks.commit(undo);
-        true
     } else {
         tracks.roll_back(undo);
-        false
     }
+    done
+}
+
+/// True if a person moves cleanly over some ticks and a blend's length around them.
+fn is_clean(chains: Chains, track: TrackId, (from, to): (i32, i32)) -> bool {
+    let body = body(chains, track);
+    let frame = |tick: i32| (tick - body.begin as i32).clamp(0, body.root.len() as i32) as usize;
+    first_unclean(&body, chains, frame(from - BLEND_TICKS)..frame(to + BLEND_TICKS)).is_none()
 }

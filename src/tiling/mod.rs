@@ -3,6 +3,7 @@
 mod audition;
 mod bake;
 mod bridge;
+mod builds;
 mod domain;
 mod engine;
 mod enrich;

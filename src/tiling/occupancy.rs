@@ -16,6 +16,9 @@ const CELL: f32 = 1.0;
 /// Most bodies whose path points lie in one cell; a fuller cell counts as blocked.
 const CELL_BODIES: usize = 7;
 
+/// Cells beyond which nothing is looked for.
+const FAR: f32 = 1024.0;
+
 /// Index of a placed piece.
 pub(super) type PieceId = u32;
 
@@ -99,11 +102,6 @@ impl Piece {
         self.begin.max(0)
     }
 
-    /// Ground position at a tick the piece occupies.
-    pub fn position(&self, tick: i32) -> Option<Vec2> {
-        self.bodies.get(usize::try_from(tick - self.first_tick()).ok()?).map(|b| b.position)
-    }
-
     /// Place and heading at a tick the piece occupies.
     pub fn state(&self, tick: i32) -> Ground {
         let body = &self.bodies[(tick - self.first_tick()) as usize];
@@ -116,10 +114,18 @@ impl Piece {
     }
 }
 
-#[derive(Clone, Copy)]
+/// The bodies in one cell at one tick, with what the cheap tests need beside them.
+#[derive(Clone, Copy, Default)]
 struct Cell {
     count: u32,
-    pieces: [PieceId; CELL_BODIES],
+    bodies: [Shown; CELL_BODIES],
+}
+
+#[derive(Clone, Copy, Default)]
+struct Shown {
+    id: PieceId,
+    position: Vec2,
+    reach: f32,
 }
 
 /// All placed pieces.
@@ -138,11 +144,10 @@ impl Occupancy {
     pub fn new(domain: &Domain, library: &Library) -> Self {
         let size = ((domain.max - domain.min) / CELL).ceil();
         let (columns, rows) = (size.x as i32 + 1, size.y as i32 + 1);
-        let empty = Cell { count: 0, pieces: [0; CELL_BODIES] };
         Self {
             pieces: vec![],
             free: vec![],
-            cells: vec![empty; (columns * rows * domain.horizon) as usize],
+            cells: vec![Cell::default(); (columns * rows * domain.horizon) as usize],
             columns,
             rows,
             origin: domain.min,
@@ -190,7 +195,7 @@ impl Occupancy {
         for (tick, body) in (piece.first_tick()..).zip(&piece.bodies) {
             let cell = self.cell_of(tick, body.position);
             let cell = &mut self.cells[cell];
-            cell.pieces[cell.count as usize] = id;
+            cell.bodies[cell.count as usize] = Shown { id, position: body.position, reach: body.reach };
             cell.count += 1;
         }
         self.pieces[id as usize] = Some(piece);
@@ -202,17 +207,24 @@ impl Occupancy {
         for (tick, body) in (piece.first_tick()..).zip(&piece.bodies) {
             let cell = self.cell_of(tick, body.position);
             let cell = &mut self.cells[cell];
-            let at = cell.pieces[..cell.count as usize].iter().position(|&p| p == id).expect("shown");
+            let at = cell.bodies[..cell.count as usize].iter().position(|b| b.id == id).expect("shown");
             cell.count -= 1;
-            cell.pieces[at] = cell.pieces[cell.count as usize];
+            cell.bodies[at] = cell.bodies[cell.count as usize];
         }
         self.pieces[id as usize] = Some(piece);
     }
 
     fn cell_of(&self, tick: i32, position: Vec2) -> usize {
-        let c = ((position - self.origin) / CELL).floor();
-        let (x, z) = ((c.x as i32).clamp(0, self.columns - 1), (c.y as i32).clamp(0, self.rows - 1));
+        let (x, z) = self.column_and_row(position);
+        let (x, z) = (x.clamp(0, self.columns - 1), z.clamp(0, self.rows - 1));
         ((tick * self.rows + z) * self.columns + x) as usize
+    }
+
+    /// May be outside the grid. A cast rounds towards zero, which is down once the number is above it; calls of `floor`
+    /// would cost more than all the rest.
+    fn column_and_row(&self, position: Vec2) -> (i32, i32) {
+        let c = (position - self.origin) / CELL + FAR;
+        (c.x as i32 - FAR as i32, c.y as i32 - FAR as i32)
     }
 
     /// True if the piece stays inside the domain and clear of all bodies shown, but for those of its own instance.
@@ -271,6 +283,7 @@ impl Occupancy {
         let tick = piece.first_tick() + i as i32;
         let footprint = |role: u32, frame: u32| &library.roles[role as usize].footprints[frame as usize];
         let reach = body.reach + self.max_reach;
+        let mut discs = None;
         let (columns, rows) = self.cells_within(body.position, reach);
         for z in rows {
             for x in columns.clone() {
@@ -278,17 +291,19 @@ impl Occupancy {
                 if cell.count as usize == CELL_BODIES {
                     met(None)?;
                 }
-                for &id in &cell.pieces[..cell.count as usize] {
-                    let other = self.piece(id);
-                    let theirs = &other.bodies[(tick - other.first_tick()) as usize];
-                    let apart = body.reach + theirs.reach;
-                    let far = body.position.distance_squared(theirs.position) >= apart * apart;
-                    if far || other.instance == piece.instance && piece.instance != NO_INSTANCE {
+                for shown in &cell.bodies[..cell.count as usize] {
+                    let apart = body.reach + shown.reach;
+                    if body.position.distance_squared(shown.position) >= apart * apart {
                         continue;
                     }
-                    let own = world_discs(body, footprint(piece.role, body.frame));
-                    if overlap(&own, &world_discs(theirs, footprint(other.role, theirs.frame))) {
-                        met(Some(id))?;
+                    let other = self.piece(shown.id);
+                    if other.instance == piece.instance && piece.instance != NO_INSTANCE {
+                        continue;
+                    }
+                    let theirs = &other.bodies[(tick - other.first_tick()) as usize];
+                    let own = discs.get_or_insert_with(|| world_discs(body, footprint(piece.role, body.frame)));
+                    if overlap(own, &world_discs(theirs, footprint(other.role, theirs.frame))) {
+                        met(Some(shown.id))?;
                     }
                 }
             }
@@ -297,10 +312,8 @@ impl Occupancy {
     }
 
     fn cells_within(&self, position: Vec2, distance: f32) -> (RangeInclusive<i32>, RangeInclusive<i32>) {
-        let low = ((position - distance - self.origin) / CELL).floor();
-        let high = ((position + distance - self.origin) / CELL).floor();
-        let columns = (low.x as i32).max(0)..=(high.x as i32).min(self.columns - 1);
-        (columns, (low.y as i32).max(0)..=(high.y as i32).min(self.rows - 1))
+        let (low, high) = (self.column_and_row(position - distance), self.column_and_row(position + distance));
+        (low.0.max(0)..=high.0.min(self.columns - 1), low.1.max(0)..=high.1.min(self.rows - 1))
     }
 
     /// Ids of the pieces whose path points lie within `distance` of `position` at `tick`, in no particular order.
@@ -310,11 +323,8 @@ impl Occupancy {
         for z in rows {
             for x in columns.clone() {
                 let cell = &self.cells[((tick * self.rows + z) * self.columns + x) as usize];
-                out.extend(
-                    cell.pieces[..cell.count as usize]
-                        .iter()
-                        .filter(|&&id| self.piece(id).position(tick).is_some_and(|p| p.distance(position) < distance)),
-                );
+                let near = |b: &&Shown| b.position.distance_squared(position) < distance * distance;
+                out.extend(cell.bodies[..cell.count as usize].iter().filter(near).map(|b| b.id));
             }
         }
     }

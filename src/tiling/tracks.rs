@@ -228,7 +228,7 @@ impl<'a> Tracks<'a> {
     /// The people as baking wants them.
     pub fn chains(&self) -> Chains<'_> {
         let Self { library, domain, occupancy, tracks, .. } = self;
-        Chains { library, horizon: domain.horizon, occupancy, lists: tracks }
+        Chains { library, domain, occupancy, lists: tracks }
     }
 
     /// Share of the people's time inside patches of two or more.

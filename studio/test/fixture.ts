@@ -1,7 +1,7 @@
 /** Writes small synthetic crowds in the real file format: people walk in arcs, meet, talk, and part. */
 
 import { container } from "./container";
-import { at, FPS, type Ground, kinematics, pose, type Q, SKELETON, type V3, walk } from "./gait";
+import { at, CANONICAL, FPS, type Ground, kinematics, LANKY, pose, type Q, SKELETON, type V3, walk } from "./gait";
 
 export interface FixtureOptions {
   people?: number;
@@ -88,10 +88,15 @@ export function fixtureCrowd({ people = 12, secs = 10, alter, version = 1 }: Fix
   const rotations: number[] = [];
   const points: number[] = [];
   const headings: number[] = [];
+  // Every third person has another build.
+  const buildOf = (person: number) => (person % 3 === 1 ? 1 : 0);
+  const bones = (person: number) => [CANONICAL, LANKY][buildOf(person)];
   const exact = (person: number, frame: number): { root: V3; q: Q[] } => {
     const g = plans[person].states[frame + 60];
     const q = pose(g, person, frame / FPS);
-    const lowest = Math.min(...["left_toe", "right_toe"].map((name) => kinematics([0, 0, 0], q)[at(name)][1]));
+    const lowest = Math.min(
+      ...["left_toe", "right_toe"].map((name) => kinematics([0, 0, 0], q, bones(person))[at(name)][1]),
+    );
     return { root: [g.x, 0.02 - lowest, g.z], q };
   };
   for (const [person, p] of plans.entries()) {
@@ -149,8 +154,14 @@ export function fixtureCrowd({ people = 12, secs = 10, alter, version = 1 }: Fix
       last_frame: last,
     },
     instances: instances.map((kind) => ({ kind })),
-    characters: plans.map((p) => ({
+    builds: [CANONICAL, LANKY].map((offsets, i) => ({
+      name: ["average", "lanky"][i],
+      offsets: offsets.map((o) => [...o]),
+      flesh: offsets.map(() => (i === 0 ? [1, 1, 1, 0] : [0.9, 1, 0.9, 0.01])),
+    })),
+    characters: plans.map((p, person) => ({
       begin: 0,
+      build: buildOf(person),
       frames: last + 1,
       fragments: p.fragments.map((f) => ({ ...f, samples: f.end - f.begin + 1 })),
     })),
@@ -184,7 +195,7 @@ export function fixtureCrowd({ people = 12, secs = 10, alter, version = 1 }: Fix
   );
   const truth = (person: number, frame: number) => {
     const { root: hips, q } = exact(person, frame);
-    return kinematics(hips, q);
+    return kinematics(hips, q, bones(person));
   };
   return { bytes, truth, lastFrame: last };
 }

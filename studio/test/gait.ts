@@ -29,6 +29,12 @@ export const SKELETON: readonly (readonly [name: string, parent: number, offset:
   ["right_fore_arm", 19, [-0.28, 0, 0]],
   ["right_hand", 20, [-0.25, 0, 0]],
 ];
+/** The canonical bones, and those of someone with longer legs and shorter arms. */
+export const CANONICAL: readonly V3[] = SKELETON.map(([, , offset]) => offset);
+export const LANKY: readonly V3[] = SKELETON.map(([name, , [x, y, z]]) => {
+  const factor = /leg|left_foot|right_foot/.test(name) ? 1.08 : /arm|hand/.test(name) ? 0.94 : 1;
+  return [x * factor, y * factor, z];
+});
 export const at = (name: string) => SKELETON.findIndex(([n]) => n === name);
 
 function about(axis: 0 | 1 | 2, angle: number): Q {
@@ -126,13 +132,13 @@ function turn(q: Q, [x, y, z]: V3): V3 {
 }
 
 /** Global positions of all joints: an own forward kinematics, so that tests have something to compare with. */
-export function kinematics(root: V3, rotations: readonly Q[]): V3[] {
+export function kinematics(root: V3, rotations: readonly Q[], offsets: readonly V3[] = CANONICAL): V3[] {
   const globals: { p: V3; q: Q }[] = [];
-  for (const [i, [, parent, offset]] of SKELETON.entries()) {
+  for (const [i, [, parent]] of SKELETON.entries()) {
     if (parent < 0) globals.push({ p: root, q: rotations[0] });
     else {
       const up = globals[parent];
-      const o = turn(up.q, offset);
+      const o = turn(up.q, offsets[i]);
       globals.push({ p: [up.p[0] + o[0], up.p[1] + o[1], up.p[2] + o[2]], q: times(up.q, rotations[i]) });
     }
   }

@@ -1,8 +1,9 @@
 import { describe, expect, it } from "vitest";
 import { readCrowd } from "../src/crowd/reader";
 import { buildMannequin, restPositions } from "../src/draw/mannequin";
-import { looksOf, PART_COUNT } from "../src/draw/palette";
+import { lookOf, looksOf, PART_COUNT } from "../src/draw/palette";
 import { fixtureCrowd } from "./fixture";
+import looks from "./looks.json";
 
 const { joints } = readCrowd(fixtureCrowd({ people: 1, secs: 1 }).bytes);
 
@@ -24,7 +25,7 @@ describe.each([1, 0.6, 0.45])("the mannequin at detail %f", (detail) => {
   });
 
   it("is small enough for crowds, and every index is inside", () => {
-    expect(made.indices.length / 3).toBeLessThan(5500 * detail + 500);
+    expect(made.indices.length / 3).toBeLessThan(6000 * detail + 500);
     expect(Math.max(...made.indices)).toBeLessThan(vertices);
     expect(vertices).toBeLessThan(65536);
   });
@@ -68,6 +69,13 @@ describe("looks", () => {
     const different = new Set(Array.from({ length: 50 }, (_, i) => looksOf(i).join()));
     expect(different.size).toBeGreaterThan(45);
     expect(looksOf(0)).toHaveLength(PART_COUNT * 4);
+  });
+
+  it("are the same as in exported files", () => {
+    for (const [person, expected] of looks.entries()) {
+      const found = lookOf(person).map((color) => (color === null ? null : Number.parseInt(color.slice(1), 16)));
+      expect(found).toEqual(expected);
+    }
   });
 
   it("need the canonical joints", () => {

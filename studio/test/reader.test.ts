@@ -107,6 +107,22 @@ describe("a broken crowd", () => {
     expect(fragment({ begin: 0.5 })).toBe("character 2, fragment 0, begin: expected a whole number, found 0.5");
   });
 
+  it("names builds that are not there or not whole, and takes files without builds for people on the skeleton", () => {
+    type Header = { builds?: { offsets: number[][] }[]; characters: { build?: number }[] };
+    expect(broken((h: Header) => (h.characters[1].build = 7))).toBe("character 1: build 7 does not exist");
+    expect(broken((h: Header) => h.builds?.[1].offsets.pop())).toBe("build 1, offsets: expected 22 rows, found 21");
+    expect(broken((h: Header) => h.builds?.[1].offsets[3].pop())).toMatch(/^build 1, offsets: expected 3 numbers/);
+    const alter = (header: object) => {
+      const h = header as Header;
+      delete h.builds;
+      for (const c of h.characters) delete c.build;
+    };
+    const old = readCrowd(fixtureCrowd({ people: 3, secs: 2, alter }).bytes);
+    expect(old.builds).toHaveLength(1);
+    expect(old.builds[0].offsets).toEqual(old.joints.map((j) => j.offset));
+    expect(old.characters.map((c) => c.build)).toEqual([0, 0, 0]);
+  });
+
   it("names joints whose parents come later", () => {
     expect(broken((h: { skeleton: { joints: { parent: number }[] } }) => (h.skeleton.joints[3].parent = 8))).toMatch(
       /^joint 3/,

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { readCrowd } from "../src/crowd/reader";
 import { ownFrame, Pose, samplePose, sampleRoot } from "../src/crowd/sample";
-import { packFragmentColors, packPeople, packRoots, packRotations } from "../src/draw/packing";
+import { packBuilds, packFragmentColors, packPeople, packRoots, packRotations } from "../src/draw/packing";
 import { fixtureCrowd } from "./fixture";
 
 const fixture = fixtureCrowd({ people: 7, secs: 3 });
@@ -24,12 +24,14 @@ describe("sampling", () => {
 
   it("keeps bones as long as they are between frames", () => {
     const pose = new Pose(crowd.joints.length);
+    const { offsets } = crowd.builds[1];
+    expect(offsets).not.toEqual(crowd.builds[0].offsets);
     for (let secs = 0; secs < 3; secs += 0.0137) {
-      samplePose(crowd, 2, secs, pose);
-      for (const [j, { parent, offset }] of crowd.joints.entries()) {
+      samplePose(crowd, 4, secs, pose);
+      for (const [j, { parent }] of crowd.joints.entries()) {
         if (parent < 0) continue;
         const d = [0, 1, 2].map((a) => pose.positions[j * 3 + a] - pose.positions[parent * 3 + a]);
-        expect(Math.hypot(...d)).toBeCloseTo(Math.hypot(...offset), 4);
+        expect(Math.hypot(...d)).toBeCloseTo(Math.hypot(...offsets[j]), 4);
       }
     }
   });
@@ -63,8 +65,8 @@ describe("the textures' layout", () => {
 
   it("holds every person's frames where the shader looks", () => {
     for (const [person, c] of crowd.characters.entries()) {
-      const [firstFrame, begin, frames] = texel(people, person);
-      expect([firstFrame, begin, frames]).toEqual([c.firstFrame, c.begin, c.frames]);
+      const [firstFrame, begin, frames, build] = texel(people, person);
+      expect([firstFrame, begin, frames, build]).toEqual([c.firstFrame, c.begin, c.frames, person % 3 === 1 ? 1 : 0]);
       const out = [0, 0, 0];
       for (const frame of [0, 31, last]) {
         sampleRoot(crowd, person, frame / 30, out);
@@ -72,6 +74,17 @@ describe("the textures' layout", () => {
         for (const [axis, v] of [x, y, z].entries()) expect(v).toBeCloseTo(out[axis], 4);
         const q = texel(rotations, (firstFrame + frame) * 22 + 5);
         expect(Math.hypot(...q)).toBeCloseTo(32767, -1);
+      }
+    }
+  });
+
+  it("holds every build's bones and flesh", () => {
+    const builds = packBuilds(crowd, width);
+    for (const [b, build] of crowd.builds.entries()) {
+      for (let j = 0; j < crowd.joints.length; j++) {
+        const at = (b * crowd.joints.length + j) * 2;
+        for (const [k, v] of [...build.offsets[j], 0].entries()) expect(texel(builds, at)[k]).toBeCloseTo(v, 6);
+        for (const [k, v] of build.flesh[j].entries()) expect(texel(builds, at + 1)[k]).toBeCloseTo(v, 6);
       }
     }
   });

@@ -39,8 +39,8 @@ def draw_ground(axes: Axes, clips: list[Clip]) -> None:
         axes.plot(way[:, 0], way[:, 1], color=colour, lw=1.6, solid_capstyle="round")
         seconds = way[:: int(FPS)]
         axes.scatter(seconds[:, 0], seconds[:, 1], s=9, color=colour, zorder=3)
-        axes.scatter(*way[0], s=46, facecolor=FLOOR, edgecolor=colour, zorder=4)
-        axes.scatter(*way[-1], s=46, color=colour, zorder=4)
+        axes.scatter(way[0, 0], way[0, 1], s=46, facecolor=FLOOR, edgecolor=colour, zorder=4)
+        axes.scatter(way[-1, 0], way[-1, 1], s=46, color=colour, zorder=4)
     axes.set_aspect("equal", adjustable="datalim")
     axes.invert_yaxis()
     axes.set_title("way over the ground, m; dots are seconds", loc="left", size=9.5, color=INK)

@@ -168,7 +168,7 @@ fn faults_of_the_skeleton_name_their_line() {
     refused(ASF, "leg foot", "leg foot\nroot foot", 46, "expected one parent of 'foot'");
     refused(ASF, "leg foot", "", 33, "expected bone 'foot' to hang from the root");
     refused(ASF, "hip leg", "foot leg", 23, "no way to it");
-    refused(ASF, ":hierarchy", ":other", 45, "expected :bonedata and :hierarchy");
+    refused(ASF, ":hierarchy", ":other", 46, "expected :bonedata and :hierarchy");
     refused(ASF, "order TX TY TZ", "order", 46, "expected an order with TX TY TZ");
 }
 

@@ -1,6 +1,6 @@
 //! The parts of a glTF file: its JSON, and the binary chunk of a GLB.
 
-use gltf_json::Root;
+use gltf_json::{Accessor, Animation, Buffer, Node, Skin, buffer::View};
 
 use crate::{Error, Result};
 
@@ -8,11 +8,37 @@ pub(super) fn bad(place: impl Into<String>, problem: impl Into<String>) -> Error
     Error::invalid("glTF", place, problem)
 }
 
+/// What is read of the JSON; meshes, materials and all else may be as they like.
+#[derive(Debug, serde::Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Document {
+    asset: Asset,
+    #[serde(default)]
+    pub accessors: Vec<Accessor>,
+    #[serde(default)]
+    pub animations: Vec<Animation>,
+    #[serde(default)]
+    pub buffers: Vec<Buffer>,
+    #[serde(default)]
+    pub buffer_views: Vec<View>,
+    #[serde(default)]
+    pub nodes: Vec<Node>,
+    #[serde(default)]
+    pub skins: Vec<Skin>,
+    #[serde(default)]
+    extensions_required: Vec<String>,
+}
+
+#[derive(Debug, serde::Deserialize)]
+struct Asset {
+    version: String,
+}
+
 /// The JSON and the binary chunk, where there is one.
-pub(super) fn open(bytes: &[u8]) -> Result<(Root, Option<&[u8]>)> {
+pub(super) fn open(bytes: &[u8]) -> Result<(Document, Option<&[u8]>)> {
     let (json, binary) = if bytes.starts_with(b"glTF") { chunks(bytes)? } else { (bytes, None) };
     let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
-    let root: Root = serde_json::from_slice(json)
+    let root: Document = serde_json::from_slice(json)
         .map_err(|e| bad(format!("JSON line {} column {}", e.line(), e.column()), e.to_string()))?;
     if !root.asset.version.starts_with("2.") {
         return Err(bad("asset", format!("expected version 2, found '{}'", root.asset.version)));

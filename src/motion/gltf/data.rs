@@ -11,9 +11,9 @@ use base64::Engine;
 use gltf_json::accessor::{ComponentType, Type};
 use gltf_json::buffer::View;
 use gltf_json::validation::Checked;
-use gltf_json::{Accessor, Index, Root};
+use gltf_json::{Accessor, Index};
 
-use super::container::bad;
+use super::container::{Document, bad};
 use crate::{Error, Result};
 
 /// Decoded floats allowed per byte read: bytes become floats, and a little is shared between accessors.
@@ -21,7 +21,7 @@ const FLOATS_PER_BYTE: usize = 8;
 
 /// Reads accessors of one file.
 pub(super) struct Data<'a> {
-    root: &'a Root,
+    root: &'a Document,
     binary: Option<&'a [u8]>,
     folder: Option<&'a Path>,
     buffers: BTreeMap<usize, Cow<'a, [u8]>>,
@@ -34,7 +34,7 @@ pub(super) struct Data<'a> {
 
 impl<'a> Data<'a> {
     /// `folder` is where files beside it lie; without one they are refused.
-    pub fn new(root: &'a Root, binary: Option<&'a [u8]>, bytes: usize, folder: Option<&'a Path>) -> Self {
+    pub fn new(root: &'a Document, binary: Option<&'a [u8]>, bytes: usize, folder: Option<&'a Path>) -> Self {
         let budget = bytes.saturating_mul(FLOATS_PER_BYTE);
         Self { root, binary, folder, buffers: BTreeMap::new(), decoded: BTreeMap::new(), budget, bytes }
     }

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use glam::{DAffine3, DMat4, DQuat, DVec3, DVec4, Mat4};
+use gltf_json::Animation;
 use gltf_json::accessor::Type;
 use gltf_json::animation::{Interpolation, Property};
 use gltf_json::validation::Checked;
-use gltf_json::{Animation, Root};
 
 use super::animation::{Keys, Tracks, tracks, turn};
-use super::container::{bad, open};
+use super::container::{Document, bad, open};
 use super::data::Data;
 use crate::Result;
 use crate::motion::import::Capture;
@@ -60,7 +60,7 @@ pub(crate) fn read(bytes: &[u8], source: Source) -> Result<Capture> {
 }
 
 /// The animation of that name, or all.
-fn chosen<'a>(root: &'a Root, name: Option<&str>) -> Result<Vec<&'a Animation>> {
+fn chosen<'a>(root: &'a Document, name: Option<&str>) -> Result<Vec<&'a Animation>> {
     let all = &root.animations;
     let found: Vec<&Animation> = all.iter().filter(|a| name.is_none() || a.name.as_deref() == name).collect();
     if found.is_empty() {
@@ -98,7 +98,7 @@ fn timing(tracks: &[BTreeMap<usize, Tracks>], fps: Option<f32>) -> Timing {
     rate::timing(&times, [begin.into(), end.into()], fps.map(f64::from), smooth)
 }
 
-fn tree(root: &Root, data: &mut Data, animations: &[&Animation]) -> Result<Tree> {
+fn tree(root: &Document, data: &mut Data, animations: &[&Animation]) -> Result<Tree> {
     let mut nodes: Vec<Node> = root.nodes.iter().map(node).collect();
     for (i, node) in root.nodes.iter().enumerate() {
         for child in node.children.iter().flatten().map(|c| c.value()) {
@@ -162,7 +162,7 @@ fn tip(node: &gltf_json::Node) -> Option<DVec3> {
 }
 
 /// Marks the skins' joints, with their rotations in the bind pose.
-fn skins(root: &Root, data: &mut Data, tree: &mut Tree) -> Result<()> {
+fn skins(root: &Document, data: &mut Data, tree: &mut Tree) -> Result<()> {
     let rest = tree.rest_transforms();
     for (i, skin) in root.skins.iter().enumerate() {
         let joints: Vec<usize> = skin.joints.iter().map(|j| j.value()).collect();

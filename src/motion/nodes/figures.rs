@@ -78,8 +78,9 @@ fn unmarked(tree: &Tree, moving: &[usize]) -> Vec<Vec<usize>> {
     let size = subtree_counts(tree, |_| true);
     let mut roots = BTreeSet::new();
     while let Some(i) = open.pop() {
-        // A still node above several trees large enough for people is no joint but what holds them together.
-        let holder = !tree.nodes[i].animated && children[i].iter().all(|&c| size[c] >= PERSON);
+        // A still node above one tree, or above several large enough for people, is no joint but what holds them.
+        let one = |c: usize| size[c] + 1 == size[i];
+        let holder = !tree.nodes[i].animated && children[i].iter().all(|&c| size[c] >= PERSON || one(c));
         if holder {
             open.extend(&children[i]);
         } else {

@@ -438,7 +438,7 @@ impl<'a> Patchwork<'a> {
 
     /// The people as baking wants them.
     pub fn chains<'s>(&'s self, lists: &'s [Vec<PieceId>]) -> Chains<'s> {
-        Chains { library: self.library, horizon: self.domain.horizon, occupancy: &self.occupancy, lists }
+        Chains { library: self.library, domain: self.domain, occupancy: &self.occupancy, lists }
     }
 
     /// How far the run is.

@@ -28,12 +28,24 @@ export interface Fragment {
   samples: number;
 }
 
+/** A person's bones and girth; as src/motion/build.rs. */
+export interface Build {
+  name: string;
+  /** Offset of every joint from its parent, in place of the skeleton's. */
+  offsets: readonly Vec3[];
+  /** How the flesh around every joint differs from the canonical body's: scale x, y, z about it, shift forward. */
+  flesh: readonly Flesh[];
+}
+export type Flesh = readonly [x: number, y: number, z: number, forward: number];
+
 export interface Character {
   /** First frame of the final motion on the crowd's clock. */
   begin: number;
   frames: number;
   /** Place of that frame in `root` and `rotations`. */
   firstFrame: number;
+  /** Index of the build. */
+  build: number;
   fragments: Fragment[];
 }
 
@@ -42,6 +54,8 @@ export interface Crowd {
   /** As text: 64 bits do not fit a number. */
   seed: string;
   joints: Joint[];
+  /** At least one. */
+  builds: Build[];
   region: Vec2[];
   obstacles: Vec2[][];
   lastFrame: number;

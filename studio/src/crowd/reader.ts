@@ -1,7 +1,7 @@
 /** Reads a crowd file (`*.crowd`); see src/stage/file.rs for the format. */
 
 import { Container, count, FileProblem, finite, list, object, text, whole } from "./container";
-import type { Character, Crowd, Fragment, Joint, Kind, Vec2, Vec3 } from "./model";
+import type { Build, Character, Crowd, Flesh, Fragment, Joint, Kind, Vec2, Vec3 } from "./model";
 
 export const MAGIC = "CQCROWD";
 export const VERSION = 1;
@@ -19,6 +19,7 @@ export function readCrowd(buffer: ArrayBuffer): Crowd {
     fps: finite(header.fps, "header.fps"),
     seed: seedText(header.seed, file.headerText),
     joints,
+    builds: builds(header.builds, joints),
     region: polygon(domain.region, "header.domain.region"),
     obstacles: list(domain.obstacles, "header.domain.obstacles").map((o, i) => polygon(o, `obstacle ${i}`)),
     lastFrame: count(domain.last_frame, "header.domain.last_frame"),
@@ -50,6 +51,30 @@ function joint(value: unknown, index: number, all: unknown[]): Joint {
     throw new FileProblem(place, `expected a parent before it among ${all.length} joints, found ${parent}`);
   }
   return { name: text(v.name, `${place}, name`), parent, offset: vector(v.offset, 3, `${place}, offset`) as Vec3 };
+}
+
+/** Files without builds are of people on the skeleton itself. */
+function builds(value: unknown, joints: readonly Joint[]): Build[] {
+  const found = value === undefined ? [] : list(value, "header.builds");
+  if (found.length === 0) {
+    return [{ name: "average", offsets: joints.map((j) => j.offset), flesh: joints.map((): Flesh => [1, 1, 1, 0]) }];
+  }
+  return found.map((b, i) => {
+    const place = `build ${i}`;
+    const v = object(b, place);
+    const rows = (key: "offsets" | "flesh", width: number) => {
+      const all = list(v[key], `${place}, ${key}`);
+      if (all.length !== joints.length) {
+        throw new FileProblem(`${place}, ${key}`, `expected ${joints.length} rows, found ${all.length}`);
+      }
+      return all.map((row) => vector(row, width, `${place}, ${key}`));
+    };
+    return {
+      name: text(v.name, `${place}, name`),
+      offsets: rows("offsets", 3) as Vec3[],
+      flesh: rows("flesh", 4) as unknown as Flesh[],
+    };
+  });
 }
 
 function vector(value: unknown, length: number, place: string): readonly number[] {
@@ -84,7 +109,8 @@ function characters(values: unknown[]): Character[] {
       return fragment;
     });
     const frames = count(v.frames, `${place}, frames`);
-    const character = { begin: count(v.begin, `${place}, begin`), frames, firstFrame, fragments };
+    const build = v.build === undefined ? 0 : count(v.build, `${place}, build`);
+    const character = { begin: count(v.begin, `${place}, begin`), frames, firstFrame, build, fragments };
     firstFrame += frames;
     return character;
   });
@@ -126,6 +152,9 @@ function checkReferences(crowd: Crowd): void {
     if (kind >= crowd.kinds.length) throw new FileProblem(`instance ${i}`, `kind ${kind} does not exist`);
   }
   for (const [i, character] of crowd.characters.entries()) {
+    if (character.build >= crowd.builds.length) {
+      throw new FileProblem(`character ${i}`, `build ${character.build} does not exist`);
+    }
     for (const [k, f] of character.fragments.entries()) {
       const kind = crowd.kinds[crowd.instances[f.instance] ?? -1];
       if (kind === undefined || f.role >= kind.people) {

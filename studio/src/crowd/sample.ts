@@ -1,6 +1,6 @@
 /** Poses on the CPU: the reference for the GPU, and what picking and following use. No allocation per call. */
 
-import type { Crowd } from "./model";
+import type { Crowd, Vec3 } from "./model";
 
 /** Global joint transforms of one person. */
 export class Pose {
@@ -43,11 +43,12 @@ export function samplePose(crowd: Crowd, person: number, secs: number, pose: Pos
   const at = ownFrame(crowd, person, secs);
   const i = Math.min(Math.floor(at), Math.max(c.frames - 2, 0));
   const j = Math.min(i + 1, c.frames - 1);
+  const { offsets } = crowd.builds[c.build];
   for (let k = 0; k < crowd.joints.length; k++) {
     const a = ((c.firstFrame + i) * crowd.joints.length + k) * 4;
     const b = ((c.firstFrame + j) * crowd.joints.length + k) * 4;
     blend(crowd.rotations, a, b, at - i, local);
-    attach(crowd, k, pose);
+    attach(crowd, offsets[k], k, pose);
   }
   return true;
 }
@@ -67,8 +68,8 @@ function blend(packed: Int16Array, a: number, b: number, t: number, out: Float64
   for (let n = 0; n < 4; n++) out[n] /= length;
 }
 
-function attach(crowd: Crowd, k: number, pose: Pose): void {
-  const { parent, offset } = crowd.joints[k];
+function attach(crowd: Crowd, offset: Vec3, k: number, pose: Pose): void {
+  const { parent } = crowd.joints[k];
   if (parent < 0) {
     pose.rotations.set(local, k * 4);
     return;

@@ -43,11 +43,20 @@ export function packRoots(crowd: Crowd, width: number): Packed<Float32Array> {
   return { data, ...shape };
 }
 
-/** One texel per person: first frame in the lists above, first frame on the crowd's clock, number of frames, 0. */
+/** One texel per person: first frame in the lists above, first frame on the crowd's clock, number of frames, build. */
 export function packPeople(crowd: Crowd, width: number): Packed<Int32Array> {
   const { length, ...shape } = size(crowd.characters.length, width);
   const data = new Int32Array(length);
-  for (const [i, c] of crowd.characters.entries()) data.set([c.firstFrame, c.begin, c.frames, 0], i * 4);
+  for (const [i, c] of crowd.characters.entries()) data.set([c.firstFrame, c.begin, c.frames, c.build], i * 4);
+  return { data, ...shape };
+}
+
+/** Two texels per build and joint: the offset x, y, z from the parent and 0; the flesh's scale x, y, z and shift. */
+export function packBuilds(crowd: Crowd, width: number): Packed<Float32Array> {
+  const { length, ...shape } = size(crowd.builds.length * crowd.joints.length * 2, width);
+  const data = new Float32Array(length);
+  const rows = crowd.builds.flatMap((b) => b.offsets.flatMap((offset, j) => [...offset, 0, ...b.flesh[j]]));
+  data.set(rows);
   return { data, ...shape };
 }
 

@@ -31,14 +31,17 @@ export const LIGHT: Theme = {
   sunStrength: 1.75,
 };
 
-const SKIN = ["#f2c9ac", "#e5b08d", "#d49a74", "#b97a56", "#8d5a3c", "#6a422d"];
-const HAIR = ["#2a211c", "#3d2b20", "#5b3d28", "#7d5a3c", "#a98657", "#1b1a1c", "#8b8783"];
+// Dealt as src/export/look.rs deals them, so that a person looks the same in exported files.
+const SKIN = ["#f2c9ac", "#e5b08d", "#d49a74", "#b97a56", "#8d5a3c", "#6a422d", "#4b2f22"];
+const HAIR = ["#2a211c", "#3d2b20", "#5b3d28", "#7d5a3c", "#a98657", "#1b1a1c", "#8b8783", "#9b4a2c"];
 const SHIRT = [
   "#d0644a", "#e2a13f", "#4a8c86", "#3d6d9e", "#87608f", "#a9b9c2", "#efeae0", "#6b8a57", "#c98297", "#33425a",
-  "#78a6c6", "#d6bd8c", "#b5483f", "#5aa18a",
+  "#78a6c6", "#d6bd8c", "#b5483f", "#5aa18a", "#2b2d33", "#e3c7b0", "#5d5a94", "#9fb27a",
 ]; // biome-ignore format: a palette
-const TROUSERS = ["#2f3a4d", "#46546a", "#6a5a4a", "#857b6b", "#262a31", "#3d4c45", "#5c4f5e", "#9a9484"];
-const SHOES = ["#f0ede6", "#3a2f29", "#23252a", "#8a5a3a", "#b3b6bb"];
+const TROUSERS = [
+  "#2f3a4d", "#46546a", "#6a5a4a", "#857b6b", "#262a31", "#3d4c45", "#5c4f5e", "#9a9484", "#6d8299", "#4a3a33",
+]; // biome-ignore format: a palette
+const SHOES = ["#f0ede6", "#3a2f29", "#23252a", "#8a5a3a", "#b3b6bb", "#7a3b36"];
 const SOLE = ["#dedad2", "#2a2725", "#e9e6df"];
 
 /** Evenly different hues of one calm family, for kinds and instances. */
@@ -54,41 +57,73 @@ export function bytes(color: string): [number, number, number] {
   return [hex >> 16, (hex >> 8) & 255, hex & 255];
 }
 
-/** A whole number from a person's index and a salt: the same person looks the same every time. */
-export function mixed(index: number, salt: number): number {
+/** A whole number from a person's number and a salt. */
+function mixed(index: number, salt: number): number {
   let h = Math.imul(index + 1, 0x9e3779b1) ^ Math.imul(salt + 1, 0x85ebca6b);
   h = Math.imul(h ^ (h >>> 15), 0x2c1b3c6d);
   h = Math.imul(h ^ (h >>> 12), 0x297a2d39);
   return (h ^ (h >>> 15)) >>> 0;
 }
 
-/** The parts of the mannequin that have a colour of their own. */
+/** A card from shuffled rounds of `kinds` cards, one for each person in turn, so that neighbours in number differ. */
+function dealt(person: number, salt: number, kinds: number): number {
+  const first = person - (person % kinds);
+  const round = Array.from({ length: kinds }, (_, k) => k);
+  const keys = round.map((k) => mixed(first + k, salt));
+  return round.sort((a, b) => keys[a] - keys[b] || a - b)[person % kinds];
+}
+
+/** The parts of the mannequin that have a colour of their own, or are not there at all. */
 export enum Part {
   Skin,
+  /** On the skull, or a cap. */
   Hair,
   Shirt,
   /** Forearms: shirt or bare. */
   Sleeve,
+  /** Thighs, unless under a skirt. */
   Trousers,
   /** Shins: trousers or bare. */
   Shin,
   Shoe,
   Sole,
-  /** Long hair: there or not. */
   LongHair,
+  Bun,
+  /** A cap's. */
+  Visor,
+  Skirt,
+  /** The hips under shirt and skirt. */
+  Seat,
 }
-export const PART_COUNT = 9;
+export const PART_COUNT = 13;
 
-/** sRGB colour and presence (alpha) of every part of a person. */
+/** The sRGB colour of every part of a person; null where the person has no such thing. */
+export function lookOf(person: number): (string | null)[] {
+  const pick = (list: readonly string[], salt: number) => list[dealt(person, salt, list.length)];
+  const [skin, shirt, trousers] = [pick(SKIN, 1), pick(SHIRT, 4), pick(TROUSERS, 5)];
+  const [bottoms, style] = [dealt(person, 7, 8), dealt(person, 10, 8)];
+  const [shorts, skirt] = [bottoms === 0, bottoms === 1];
+  const long = style < 2 || (skirt && style > 2);
+  const [bald, cap] = [style === 3 && !long, style === 4 && !long];
+  const hair = cap ? pick(SHIRT, 11) : pick(HAIR, 3);
+  return [
+    skin,
+    bald ? null : hair,
+    shirt,
+    dealt(person, 6, 2) === 0 ? skin : shirt,
+    skirt ? null : trousers,
+    skirt || shorts ? skin : trousers,
+    pick(SHOES, 8),
+    pick(SOLE, 9),
+    long ? hair : null,
+    style === 2 && !long ? hair : null,
+    cap ? hair : null,
+    skirt ? trousers : null,
+    trousers,
+  ];
+}
+
+/** sRGB bytes and presence (alpha) of every part of a person. */
 export function looksOf(person: number): number[] {
-  const pick = (list: readonly string[], salt: number) => list[mixed(person, salt) % list.length];
-  const skin = pick(SKIN, 1);
-  const hair = mixed(person, 2) % 11 === 0 ? "#9b4a2c" : pick(HAIR, 3);
-  const shirt = pick(SHIRT, 4);
-  const trousers = pick(TROUSERS, 5);
-  const sleeve = mixed(person, 6) % 2 === 0 ? skin : shirt;
-  const shin = mixed(person, 7) % 6 === 0 ? skin : trousers;
-  const colors = [skin, hair, shirt, sleeve, trousers, shin, pick(SHOES, 8), pick(SOLE, 9), hair];
-  const long = mixed(person, 10) % 5 < 2;
-  return colors.flatMap((color, part) => [...bytes(color), part === Part.LongHair && !long ? 0 : 255]);
+  return lookOf(person).flatMap((color) => (color === null ? [0, 0, 0, 0] : [...bytes(color), 255]));
 }

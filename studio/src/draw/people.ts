@@ -3,6 +3,7 @@
 import {
   BufferAttribute,
   DoubleSide,
+  InstancedBufferAttribute,
   InstancedBufferGeometry,
   Mesh,
   MeshDepthMaterial,
@@ -38,6 +39,7 @@ export class People {
       rest: { value: restPositions(crowd.joints).map((p) => new Vector3(...p)) },
       lift: { value: 0 },
       looks: { value: textures.looks },
+      builds: { value: textures.builds },
       fragmentColors: { value: textures.fragmentColors },
       colorMode: { value: 0 },
       chosen: { value: -1 },
@@ -63,6 +65,8 @@ export class People {
     geometry.setAttribute("bones", new BufferAttribute(made.bones, 4));
     geometry.setAttribute("weights", new BufferAttribute(made.weights, 4));
     geometry.setAttribute("part", new BufferAttribute(made.parts, 1));
+    const builds = new Float32Array(crowd.characters.map((c) => c.build));
+    geometry.setAttribute("build", new InstancedBufferAttribute(builds, 1));
     geometry.setIndex(new BufferAttribute(made.indices, 1));
     const material = new MeshStandardMaterial({ roughness: 0.82, metalness: 0 });
     material.onBeforeCompile = (shader) => this.inject(shader, crowd.joints.length, true);

@@ -21,7 +21,7 @@ precision highp float; precision highp int; precision highp sampler2D;
 precision highp isampler2D;
 uniform isampler2D rotations; uniform sampler2D roots; uniform isampler2D people;
 uniform float frame; uniform int personCount; uniform int columns;
-uniform int parents[${joints}]; uniform vec3 offsets[${joints}];
+uniform int parents[${joints}]; uniform sampler2D builds;
 layout(location = 0) out vec4 outPosition;
 layout(location = 1) out vec4 outRotation;
 ${TEXEL}
@@ -45,7 +45,8 @@ void main() {
   for (int k = joint; k >= 0; k = parents[k]) {
     vec4 r = blended(who.x + i, who.x + j, t, k);
     p = turn(r, p); q = times(r, q);
-    if (parents[k] >= 0) p += offsets[k];
+    int bone = (who.w * ${joints} + k) * 2;
+    if (parents[k] >= 0) p += texelFetch(builds, texelOf(bone, textureSize(builds, 0).x), 0).xyz;
   }
   int width = textureSize(roots, 0).x;
   vec4 rootA = texelFetch(roots, texelOf(who.x + i, width), 0), rootB = texelFetch(roots, texelOf(who.x + j, width), 0);
@@ -67,8 +68,8 @@ ivec2 poseTexel(int person, int joint) {
 /** Skins \`position\` and \`normal\` into \`skinned\` and \`skinnedNormal\`; people who are absent vanish. */
 export const skinning = (joints: number): string => /* glsl */ `
 ${poseLookup(joints)}
-uniform vec3 rest[${joints}]; uniform float lift;
-attribute vec4 bones; attribute vec4 weights; attribute float part;
+uniform vec3 rest[${joints}]; uniform float lift; uniform sampler2D builds;
+attribute float build; attribute vec4 bones; attribute vec4 weights; attribute float part;
 vec3 skinned, skinnedNormal;
 void skin(vec3 point, vec3 direction) {
   int person = gl_InstanceID;
@@ -79,8 +80,11 @@ void skin(vec3 point, vec3 direction) {
     int joint = int(bones[n] + 0.5);
     ivec2 at = poseTexel(person, joint);
     vec4 q = texelFetch(poseRotations, at, 0);
-    skinned += weights[n] * (texelFetch(posePositions, at, 0).xyz + turn(q, point - rest[joint]));
-    skinnedNormal += weights[n] * turn(q, direction);
+    int row = (int(build + 0.5) * ${joints} + joint) * 2 + 1;
+    vec4 flesh = texelFetch(builds, texelOf(row, textureSize(builds, 0).x), 0);
+    vec3 grown = (point - rest[joint]) * flesh.xyz + vec3(0.0, 0.0, flesh.w);
+    skinned += weights[n] * (texelFetch(posePositions, at, 0).xyz + turn(q, grown));
+    skinnedNormal += weights[n] * turn(q, direction / flesh.xyz);
   }
   skinned.y += lift;
 }
@@ -105,7 +109,8 @@ void dress() {
   int width = textureSize(fragmentColors, 0).x;
   if (current >= 0) color = texelFetch(fragmentColors, texelOf(current * 2 + colorMode - 1, width), 0);
   // Bodies turn into coloured figures: the shirt takes the colour, the rest a darker or lighter shade of it.
-  float shade = id == 0 ? 1.12 : id == 1 || id == 8 ? 0.42 : id == 4 || id == 5 ? 0.66 : id >= 6 ? 0.34 : 1.0;
+  bool hair = id == 1 || (id >= 8 && id <= 10), shoe = id == 6 || id == 7, below = id == 4 || id == 5 || id >= 11;
+  float shade = id == 0 ? 1.12 : hair ? 0.42 : below ? 0.66 : shoe ? 0.34 : 1.0;
   vec3 quiet = vec3(0.60, 0.60, 0.58);
   vCloth = mix(colorMode == 2 && color.a < 0.5 ? quiet : color.rgb, vec3(1.0), id == 0 ? 0.35 : 0.0) * shade;
 }

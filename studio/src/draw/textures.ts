@@ -22,7 +22,7 @@ import {
   WebGLRenderTarget,
 } from "three";
 import type { Crowd } from "../crowd/model";
-import { type Packed, packFragmentColors, packPeople, packRoots, packRotations } from "./packing";
+import { type Packed, packBuilds, packFragmentColors, packPeople, packRoots, packRotations } from "./packing";
 import { bytes, categorical, looksOf, PART_COUNT } from "./palette";
 import { POSE_VERTEX, poseFragment } from "./shaders";
 
@@ -32,6 +32,7 @@ const COLUMNS = 64;
 export class CrowdTextures {
   readonly looks: DataTexture;
   readonly fragmentColors: DataTexture;
+  readonly builds: DataTexture;
   readonly poses: WebGLRenderTarget;
   readonly columns = COLUMNS;
   private readonly material: RawShaderMaterial;
@@ -63,7 +64,8 @@ export class CrowdTextures {
     const kindColor = (kind: number) => bytes(categorical(kind));
     const instanceColor = (instance: number) => bytes(categorical(instance));
     this.fragmentColors = colorTexture(packFragmentColors(crowd, width, kindColor, instanceColor));
-    this.material = poseMaterial(crowd, width, limit);
+    this.builds = numberTexture(packBuilds(crowd, Math.min(width, 1024)), FloatType);
+    this.material = poseMaterial(crowd, width, limit, this.builds);
     const triangle = new BufferGeometry();
     triangle.setAttribute("position", new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
     const mesh = new Mesh(triangle, this.material);
@@ -107,20 +109,21 @@ function colorTexture({ data, width, height }: Packed<Uint8Array>): DataTexture 
   return texture;
 }
 
-function poseMaterial(crowd: Crowd, width: number, limit: number): RawShaderMaterial {
+function numberTexture(
+  packed: Packed<Int16Array | Float32Array | Int32Array>,
+  type: typeof FloatType | typeof ShortType | typeof IntType,
+): DataTexture {
+  const format = type === FloatType ? RGBAFormat : RGBAIntegerFormat;
+  const made = new Texture(packed.data as Float32Array<ArrayBuffer>, packed.width, packed.height, format, type);
+  made.internalFormat = type === FloatType ? "RGBA32F" : type === ShortType ? "RGBA16I" : "RGBA32I";
+  made.needsUpdate = true;
+  return made;
+}
+
+function poseMaterial(crowd: Crowd, width: number, limit: number, builds: DataTexture): RawShaderMaterial {
   const rotations = packRotations(crowd, width);
   const roots = packRoots(crowd, width);
   const people = packPeople(crowd, Math.min(width, limit));
-  const texture = (
-    packed: Packed<Int16Array | Float32Array | Int32Array>,
-    type: typeof FloatType | typeof ShortType | typeof IntType,
-  ) => {
-    const format = type === FloatType ? RGBAFormat : RGBAIntegerFormat;
-    const made = new Texture(packed.data as Float32Array<ArrayBuffer>, packed.width, packed.height, format, type);
-    made.internalFormat = type === FloatType ? "RGBA32F" : type === ShortType ? "RGBA16I" : "RGBA32I";
-    made.needsUpdate = true;
-    return { value: made };
-  };
   return new RawShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: POSE_VERTEX,
@@ -128,14 +131,14 @@ function poseMaterial(crowd: Crowd, width: number, limit: number): RawShaderMate
     depthTest: false,
     depthWrite: false,
     uniforms: {
-      rotations: texture(rotations, ShortType),
-      roots: texture(roots, FloatType),
-      people: texture(people, IntType),
+      rotations: { value: numberTexture(rotations, ShortType) },
+      roots: { value: numberTexture(roots, FloatType) },
+      people: { value: numberTexture(people, IntType) },
+      builds: { value: builds },
       frame: { value: 0 },
       personCount: { value: crowd.characters.length },
       columns: { value: COLUMNS },
       parents: { value: crowd.joints.map((j) => j.parent) },
-      offsets: { value: crowd.joints.flatMap((j) => [...j.offset]) },
     },
   });
 }

@@ -58,6 +58,24 @@ export function head(mesh: MeshBuilder, ids: Ids): void {
     long.map(([y, w, d, z]) => level(y, w, d, z, Part.LongHair, skull)),
     16,
   );
+  const bun = [
+    [1.735, 0.01, 0.012, -0.099], [1.725, 0.025, 0.028, -0.102], [1.7, 0.034, 0.038, -0.104], [1.675, 0.026, 0.028, -0.102],
+    [1.664, 0.01, 0.012, -0.098],
+  ]; // biome-ignore format: a table
+  mesh.loft(
+    bun.map(([y, w, d, z]) => level(y, w, d, z, Part.Bun, skull)),
+    9,
+  );
+  const visor = [
+    [1.704, 0.062, 0.07, 0.1],
+    [1.7, 0.072, 0.078, 0.106],
+    [1.693, 0.072, 0.078, 0.107],
+    [1.69, 0.062, 0.07, 0.1],
+  ];
+  mesh.loft(
+    visor.map(([y, w, d, z]) => level(y, w, d, z, Part.Visor, skull, 2.2)),
+    10,
+  );
 }
 
 /** A cap around the skull whose rim runs from the high forehead to the low neck. */

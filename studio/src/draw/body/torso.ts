@@ -1,5 +1,6 @@
 /** Shirt and seat. */
 
+import type { Vec3 } from "../../crowd/model";
 import type { MeshBuilder, Weights } from "../loft";
 import { Part } from "../palette";
 import { chain, type Ids, level } from "./rings";
@@ -32,7 +33,35 @@ export function torso(mesh: MeshBuilder, ids: Ids): void {
     [0.835, 0.14, 0.102, -0.012], [0.805, 0.1, 0.08, -0.01], [0.79, 0.05, 0.05, -0.008],
   ]; // biome-ignore format: a table
   mesh.loft(
-    seat.map(([y, w, d, z]) => level(y, w, d, z, Part.Trousers, hips, 2.3)),
+    seat.map(([y, w, d, z]) => level(y, w, d, z, Part.Seat, hips, 2.3)),
+    16,
+  );
+  skirt(mesh, ids);
+}
+
+/** A skirt hangs from the hips and is carried by both thighs, each on its own side. */
+function skirt(mesh: MeshBuilder, ids: Ids): void {
+  const step = (v: number, from: number, to: number) => {
+    const t = Math.min(Math.max((v - from) / (to - from), 0), 1);
+    return t * t * (3 - 2 * t);
+  };
+  const weights = ([x, y]: Vec3): Weights => {
+    const [legs, left] = [step(-y, -0.95, -0.78), step(x, -0.11, 0.11)];
+    const all: [number, number][] = [
+      [ids.hips, 1 - legs],
+      [ids.left_up_leg, legs * left],
+      [ids.right_up_leg, legs * (1 - left)],
+    ];
+    return all.filter(([, weight]) => weight > 0);
+  };
+  // height, half-width, half-depth, middle in depth
+  const rows = [
+    [0.985, 0.135, 0.09, -0.006], [0.94, 0.15, 0.104, -0.008], [0.905, 0.16, 0.112, -0.008], [0.888, 0.176, 0.126, -0.01],
+    [0.84, 0.186, 0.132, -0.012], [0.74, 0.193, 0.142, -0.009], [0.63, 0.199, 0.15, -0.006], [0.51, 0.206, 0.16, -0.003],
+    [0.505, 0.184, 0.138, -0.003], [0.56, 0.165, 0.12, -0.004],
+  ]; // biome-ignore format: a table
+  mesh.loft(
+    rows.map(([y, w, d, z]) => ({ ...level(y, w, d, z, Part.Skirt, [], 2.2), weights })),
     16,
   );
 }

@@ -1,0 +1,145 @@
+//! One leg onto its planted foot. A leg that would have to be longer than it is does what people do: the hips come
+//! down a little, the heel comes up while the ball of the foot stays, and only then the hips come down further.
+
+use glam::{Quat, Vec3};
+
+use crate::motion::ik::two_bone;
+use crate::motion::{JOINT_COUNT, canonical};
+
+/// Largest part of a leg's length that is used, so that knees never lock.
+const LEG_STRETCH: f32 = 0.995;
+/// Hips come down by this much before a heel comes up, metres.
+const EASY_LOWERING: f32 = 0.045;
+/// Most that hips are lowered, metres.
+const MAX_LOWERING: f32 = 0.10;
+/// Most that a heel is lifted, as a turn of the foot about its ball, radians.
+const MAX_LIFT: f32 = 25.0 / 180.0 * std::f32::consts::PI;
+
+/// Where a leg is and where its foot is to stand, in the world.
+#[derive(Clone, Copy)]
+pub(super) struct Leg {
+    hip: Vec3,
+    ankle: Vec3,
+    ball: Vec3,
+    reach: f32,
+}
+
+impl Leg {
+    /// The leg that ends at joint `ankle`, its foot moved by `shift`.
+    pub fn new(globals: &[(Vec3, Quat)], ankle: usize, shift: Vec3) -> Self {
+        let joints = &canonical().joints;
+        let length = joints[ankle].offset.length() + joints[ankle - 1].offset.length();
+        Self {
+            hip: globals[ankle - 2].0,
+            ankle: globals[ankle].0 + shift,
+            ball: globals[ankle + 1].0 + shift,
+            reach: length * LEG_STRETCH,
+        }
+    }
+
+    /// How far the hips should come down for the foot to be in reach, metres.
+    pub fn lowering(&self) -> f32 {
+        let flat = self.lowering_to(self.ankle);
+        if flat <= EASY_LOWERING {
+            return flat.max(0.0);
+        }
+        let lifted = self.ball + self.lift(MAX_LIFT) * (self.ankle - self.ball);
+        self.lowering_to(lifted).clamp(EASY_LOWERING, MAX_LOWERING)
+    }
+
+    fn lowering_to(&self, ankle: Vec3) -> f32 {
+        let across = (ankle - self.hip).with_y(0.0).length_squared();
+        self.hip.y - ankle.y - (self.reach * self.reach - across).max(0.0).sqrt()
+    }
+
+    /// The turn of the foot about its ball that brings the ankle in reach: none where it is.
+    fn heel_lift(&self) -> Quat {
+        let (foot, whole) = (self.ankle.distance(self.ball), self.hip.distance(self.ball));
+        if self.hip.distance(self.ankle) <= self.reach {
+            return Quat::IDENTITY;
+        }
+        let now = (self.ankle - self.ball).angle_between(self.hip - self.ball);
+        let cosine = (foot * foot + whole * whole - self.reach * self.reach) / (2.0 * foot * whole);
+        self.lift((now - cosine.clamp(-1.0, 1.0).acos()).clamp(0.0, MAX_LIFT))
+    }
+
+    /// The turn by `angle` that moves the ankle about the ball towards the hip.
+    fn lift(&self, angle: f32) -> Quat {
+        let axis = (self.ankle - self.ball).cross(self.hip - self.ball);
+        axis.try_normalize().map_or(Quat::IDENTITY, |axis| Quat::from_axis_angle(axis, angle))
+    }
+}
+
+/// Moves a foot by `shift`, lifting its heel where the leg is too short; returns how far it falls short, metres.
+/// `globals` are the pose's joints in the world before.
+pub(super) fn plant(pose: &mut [Quat], globals: &[(Vec3, Quat)], ankle: usize, shift: Vec3) -> f32 {
+    debug_assert_eq!(pose.len(), JOINT_COUNT);
+    let leg = Leg::new(globals, ankle, shift);
+    let lift = leg.heel_lift();
+    let target = leg.ball + lift * (leg.ankle - leg.ball);
+    let (up, knee, toe) = (ankle - 2, ankle - 1, ankle + 1);
+    let pole = globals[up].1 * Vec3::Z;
+    let (swing, bend, reached) = two_bone(leg.hip, globals[knee].0, globals[ankle].0, target, pole, 0.9999);
+    let (up_rotation, knee_rotation) = (swing * globals[up].1, swing * bend * globals[knee].1);
+    let foot_rotation = lift * globals[ankle].1;
+    pose[up] = (globals[0].1.inverse() * up_rotation).normalize();
+    pose[knee] = (up_rotation.inverse() * knee_rotation).normalize();
+    pose[ankle] = (knee_rotation.inverse() * foot_rotation).normalize();
+    // The toes stay on the floor.
+    pose[toe] = (foot_rotation.inverse() * globals[toe].1).normalize();
+    reached.distance(target)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::joint::LEFT_FOOT;
+
+    /// A person at rest with the left foot to be moved by `shift`: what is missed, and the joints after.
+    fn planted(shift: Vec3) -> (f32, Vec<(Vec3, Quat)>, Vec<(Vec3, Quat)>) {
+        let mut pose = [Quat::IDENTITY; JOINT_COUNT];
+        let root = canonical().joints[0].offset;
+        let (mut before, mut after) = (Vec::new(), Vec::new());
+        canonical().globals(root, &pose, &mut before);
+        let missed = plant(&mut pose, &before, LEFT_FOOT, shift);
+        canonical().globals(root, &pose, &mut after);
+        (missed, before, after)
+    }
+
+    #[test]
+    fn a_foot_in_reach_moves_as_it_is() {
+        let shift = Vec3::new(0.02, 0.06, 0.1);
+        let (missed, before, after) = planted(shift);
+        assert!(missed < 1e-4, "{missed}");
+        assert!((after[LEFT_FOOT].0 - before[LEFT_FOOT].0 - shift).length() < 1e-4);
+        assert!(after[LEFT_FOOT].1.angle_between(before[LEFT_FOOT].1) < 1e-3);
+    }
+
+    #[test]
+    fn a_heel_comes_up_where_the_leg_is_too_short_and_the_ball_stays() {
+        let shift = Vec3::new(0.0, 0.0, -0.3);
+        let (missed, before, after) = planted(shift);
+        assert!(missed < 1e-3, "{missed}");
+        let (ball, toe) = (LEFT_FOOT + 1, LEFT_FOOT + 1);
+        assert!((after[ball].0 - before[ball].0 - shift).length() < 1e-3);
+        assert!(after[LEFT_FOOT].0.y > before[LEFT_FOOT].0.y + 0.01, "the heel did not come up");
+        assert!(after[toe].1.angle_between(before[toe].1) < 1e-3, "the toes turned");
+    }
+
+    #[test]
+    fn lowering_is_continuous_and_enough() {
+        let mut globals = Vec::new();
+        canonical().globals(canonical().joints[0].offset, &[Quat::IDENTITY; JOINT_COUNT], &mut globals);
+        let mut last = 0.0;
+        for step in 0..90 {
+            let leg = Leg::new(&globals, LEFT_FOOT, Vec3::NEG_Z * (step as f32 * 0.005));
+            let lowering = leg.lowering();
+            assert!((0.0..=MAX_LOWERING).contains(&lowering) && (lowering - last).abs() < 0.012, "{step}: {lowering}");
+            last = lowering;
+            let lowered = Leg { hip: leg.hip - Vec3::Y * lowering, ..leg };
+            let ankle = lowered.ball + lowered.heel_lift() * (lowered.ankle - lowered.ball);
+            assert!(lowering == MAX_LOWERING || lowered.hip.distance(ankle) < leg.reach + 2e-3, "{step}");
+        }
+        assert!(last > EASY_LOWERING);
+    }
+}
