@@ -12,6 +12,8 @@ pub struct Limits {
     pub stitch_time: f64,
     /// Fastest turn of a joint over the fastest of the same joint in all captures of the set. Default 1.2.
     pub joint_speed_ratio: f64,
+    /// Largest acceleration of a joint over the largest of the same joint in all captures of the set. Default 1.5.
+    pub acceleration_ratio: f64,
     /// Horizontal distance of the hips from the deformed path, metres: the path is what is seen. Default 0.06.
     pub hips_offset: f64,
     /// Change of an edge's length from one source frame to the next, metres. Default 0.014 (published: 0.03).
@@ -38,6 +40,10 @@ pub struct Limits {
     pub contact_distance: f64,
     /// Largest distance between any two ground positions of the ball of a planted foot, metres. Default 0.01.
     pub plant_slide: f64,
+    /// The same, median over all plants, metres. Default 0.003.
+    pub plant_slide_median: f64,
+    /// How far a foot's joints may be below the floor, metres. Default 0.02.
+    pub sinking: f64,
 }
 
 impl Default for Limits {
@@ -47,6 +53,7 @@ impl Default for Limits {
             stitch_heading_deg: 0.5,
             stitch_time: 0.001,
             joint_speed_ratio: 1.2,
+            acceleration_ratio: 1.5,
             hips_offset: 0.06,
             stretch: 0.014,
             bend_deg: 3.0,
@@ -59,6 +66,8 @@ impl Default for Limits {
             contact_time: 0.017,
             contact_distance: 0.02,
             plant_slide: 0.01,
+            plant_slide_median: 0.003,
+            sinking: 0.02,
         }
     }
 }

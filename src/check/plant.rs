@@ -1,12 +1,13 @@
-//! Clause 6: a planted foot stays.
+//! Clause 6: a planted foot stays, and no foot sinks into the floor.
 
 use glam::Vec2;
+use rayon::prelude::*;
 
 use super::limits::Limits;
 use super::part::Part;
 use super::report::{Row, Worst};
-use crate::motion::{Foot, Plant, joint};
-use crate::stage::Crowd;
+use crate::motion::{Foot, Plant, canonical, joint};
+use crate::stage::{Character, Crowd};
 
 /// The rows of clause 6. Slide is the largest distance between any two ground positions of the ball of the foot (its
 /// toe joint) over the frames of the crowd that lie within the plant and the domain's time.
@@ -33,8 +34,28 @@ pub(super) fn rows(crowd: &Crowd, parts: &[Part], limits: &Limits) -> Vec<Row> {
     }
     vec![
         worst.row(6, "planted foot slides", limits.plant_slide, "m"),
-        median.row(6, "planted foot slides, median", limits.plant_slide, "m"),
+        median.row(6, "planted foot slides, median", limits.plant_slide_median, "m"),
+        sinking(crowd).row(6, "foot below the floor", limits.sinking, "m"),
     ]
+}
+
+/// How far ankles, balls of the feet and tips of the toes are below the floor.
+fn sinking(crowd: &Crowd) -> Worst {
+    let of = |(c, character): (usize, &Character)| {
+        let (mut worst, mut globals) = (Worst::default(), Vec::new());
+        for i in 0..character.frames() {
+            character.globals(i, &mut globals);
+            for toe in [joint::LEFT_TOE, joint::RIGHT_TOE] {
+                let tip = canonical().joints[toe].tip.map(|tip| globals[toe].0 + globals[toe].1 * tip);
+                let lowest = tip.into_iter().chain([globals[toe].0, globals[toe - 1].0]).map(|p| p.y);
+                let depth = -lowest.fold(f32::INFINITY, f32::min);
+                worst.offer(depth.max(0.0) as f64, || format!("character {c}, frame {}", character.begin as usize + i));
+            }
+        }
+        worst
+    };
+    let all: Vec<Worst> = crowd.characters.par_iter().enumerate().map(of).collect();
+    all.into_iter().fold(Worst::default(), Worst::merge)
 }
 
 fn positions(crowd: &Crowd, part: &Part, plant: &Plant) -> Vec<Vec2> {

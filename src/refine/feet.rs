@@ -56,7 +56,9 @@ pub(super) fn lock(segments: &[Segment], body: &mut Body) {
     let legs = [(Foot::Left, LEFT_FOOT), (Foot::Right, RIGHT_FOOT)];
     let offsets = legs.map(|(foot, ankle)| {
         let balls = trajectory(body, ankle + 1);
-        corrections(&balls, &locks(segments, foot, body.begin as i32, frames as i32))
+        let mut offsets = corrections(&balls, &locks(segments, foot, body.begin as i32, frames as i32));
+        keep_above_floor(&balls, &mut offsets);
+        offsets
     });
     let lowering = lowering(body, legs.map(|(_, ankle)| ankle), &offsets);
     let mut globals = Vec::new();
@@ -65,9 +67,10 @@ pub(super) fn lock(segments: &[Segment], body: &mut Body) {
         body.root[f].y -= down;
         for (k, (_, ankle)) in legs.into_iter().enumerate() {
             let shift = offsets[k][f] + Vec3::Y * down;
+            let pose = &mut body.rotations[f * JOINT_COUNT..(f + 1) * JOINT_COUNT];
+            canonical().globals(body.root[f], pose, &mut globals);
+            leg::lift_toes(pose, &mut globals, ankle, shift.y);
             if shift.length_squared() > 1e-10 {
-                let pose = &mut body.rotations[f * JOINT_COUNT..(f + 1) * JOINT_COUNT];
-                canonical().globals(body.root[f], pose, &mut globals);
                 let missed = leg::plant(pose, &globals, ankle, shift);
                 if missed > MAX_MISS && body.strained.last() != Some(&f) {
                     body.strained.push(f);
@@ -126,6 +129,13 @@ fn corrections(balls: &[Vec3], locks: &[Lock]) -> Vec<Vec3> {
         fill(&mut offsets, Some(last.end), None);
     }
     offsets
+}
+
+/// Blends and captures let feet sink a little: no ball goes below the floor.
+fn keep_above_floor(balls: &[Vec3], offsets: &mut [Vec3]) {
+    for (ball, offset) in balls.iter().zip(offsets) {
+        offset.y = offset.y.max(-ball.y);
+    }
 }
 
 fn fill(offsets: &mut [Vec3], from: Option<i32>, to: Option<i32>) {

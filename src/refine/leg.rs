@@ -8,6 +8,8 @@ use crate::motion::{JOINT_COUNT, canonical};
 
 /// Largest part of a leg's length that is used, so that knees never lock.
 const LEG_STRETCH: f32 = 0.995;
+/// How far the tips of toes may sink into the floor, metres.
+const TOE_SLACK: f32 = 0.005;
 /// Hips come down by this much before a heel comes up, metres.
 const EASY_LOWERING: f32 = 0.045;
 /// Most that hips are lowered, metres.
@@ -90,6 +92,22 @@ pub(super) fn plant(pose: &mut [Quat], globals: &[(Vec3, Quat)], ankle: usize, s
     reached.distance(target)
 }
 
+/// Bends the toes up where their tip would be more than [`TOE_SLACK`] below the floor once the foot is moved up by
+/// `raise`.
+pub(super) fn lift_toes(pose: &mut [Quat], globals: &mut [(Vec3, Quat)], ankle: usize, raise: f32) {
+    let toe = ankle + 1;
+    let (ball, turn) = globals[toe];
+    let tip = turn * canonical().joints[toe].tip.expect("toes have tips");
+    let lowest = -TOE_SLACK - (ball.y + raise);
+    if tip.y >= lowest {
+        return;
+    }
+    let slope = |y: f32| (y / tip.length()).clamp(-1.0, 1.0).asin();
+    let axis = tip.cross(Vec3::Y).try_normalize().unwrap_or(turn * Vec3::NEG_X);
+    globals[toe].1 = (Quat::from_axis_angle(axis, slope(lowest) - slope(tip.y)) * turn).normalize();
+    pose[toe] = (globals[ankle].1.inverse() * globals[toe].1).normalize();
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -124,6 +142,23 @@ mod tests {
         assert!((after[ball].0 - before[ball].0 - shift).length() < 1e-3);
         assert!(after[LEFT_FOOT].0.y > before[LEFT_FOOT].0.y + 0.01, "the heel did not come up");
         assert!(after[toe].1.angle_between(before[toe].1) < 1e-3, "the toes turned");
+    }
+
+    #[test]
+    fn toes_do_not_go_through_the_floor() {
+        let mut pose = [Quat::IDENTITY; JOINT_COUNT];
+        pose[LEFT_FOOT] = Quat::from_rotation_x(0.5);
+        let root = canonical().joints[0].offset;
+        let mut globals = Vec::new();
+        canonical().globals(root, &pose, &mut globals);
+        let toe = LEFT_FOOT + 1;
+        let tip = canonical().joints[toe].tip.unwrap();
+        let raise = -globals[toe].0.y + 0.01;
+        assert!(globals[toe].0.y + raise + (globals[toe].1 * tip).y < -0.01, "the test sinks nothing");
+        lift_toes(&mut pose, &mut globals, LEFT_FOOT, raise);
+        canonical().globals(root, &pose, &mut globals);
+        let height = globals[toe].0.y + raise + (globals[toe].1 * tip).y;
+        assert!((height + TOE_SLACK).abs() < 1e-4, "{height}");
     }
 
     #[test]
