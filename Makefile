@@ -1,6 +1,7 @@
 # make demo   set everything up and make a crowd        make view   watch it in the browser
 # make test   every test                                make lint   every linter
 # make bench  our figures beside the reference          make fmt    format everything
+# make fuzz   every parser against broken files (FUZZ_SECS=30 each)
 #
 # Every step is keyed on a file it makes, so that nothing is built twice: the virtual environment on a stamp inside
 # it, the compiled extension on itself, the studio on its built page, the demo on its report.
@@ -31,7 +32,7 @@ STUDIO_SOURCES := $(shell find studio/src studio/public -type f 2>/dev/null) \
 LINTED := python/crowdquilt python/tests examples tests/clients
 
 .NOTPARALLEL:
-.PHONY: help demo view bench setup studio test test-rust test-python test-studio test-browser lint fmt clean
+.PHONY: help demo view bench setup studio test test-rust test-python test-studio test-browser fuzz lint fmt clean
 
 help:
 	@sed -n 's/^# \(make.*\)/\1/p' Makefile
@@ -111,6 +112,23 @@ test-studio: $(NODE_MODULES)
 test-browser: setup
 	@echo "== browser tests"
 	npm --prefix studio run --silent e2e
+
+# ufbx is C: compiled like the rest, so that its faults and comparisons are seen too.
+FUZZ_SECS ?= 30
+FUZZ_TARGETS := $(basename $(notdir $(wildcard fuzz/fuzz_targets/*.rs)))
+fuzz:
+	@if ! cargo +nightly fuzz --version > /dev/null 2>&1; then \
+		echo "skipped: fuzzing needs a nightly compiler and cargo-fuzz (rustup toolchain install nightly; cargo install cargo-fuzz)"; \
+		exit 0; \
+	fi; \
+	cargo run --quiet --release --example fuzz_seeds -- fuzz/corpus; \
+	export CFLAGS="-fsanitize=address -fsanitize-coverage=trace-cmp"; \
+	cargo +nightly fuzz build; \
+	for target in $(FUZZ_TARGETS); do \
+		echo "== fuzz $$target for $(FUZZ_SECS) s"; \
+		cargo +nightly fuzz run $$target -- -max_total_time=$(FUZZ_SECS) -timeout=10 -rss_limit_mb=2048 \
+			-max_len=65536 -verbosity=0 -print_final_stats=1; \
+	done
 
 lint: setup $(NODE_MODULES)
 	@echo "== Rust"

@@ -1,23 +1,15 @@
 //! Captures in one format say what they say in another.
 //!
-//! The real ones are in `../shared/mocap`, or where `CROWDQUILT_MOCAP` says; tests of them say so and pass without.
+//! Tests of real captures say so and pass where there are none.
+
+mod fixture;
+mod mocap;
 
 use std::path::{Path, PathBuf};
 
 use crowdquilt::motion::take::ImportOptions;
-use crowdquilt::motion::{Clip, import};
+use crowdquilt::motion::{Clip, JOINT_COUNT, import};
 use glam::{Quat, Vec3};
-
-/// The folder of captures, if it is there.
-fn mocap() -> Option<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folder = std::env::var_os("CROWDQUILT_MOCAP").map_or_else(|| root.join("../shared/mocap"), PathBuf::from);
-    if folder.join("index.csv").is_file() {
-        return Some(folder);
-    }
-    eprintln!("skipped: no captures at {} (set CROWDQUILT_MOCAP to a folder with index.csv)", folder.display());
-    None
-}
 
 fn load(path: &Path, options: ImportOptions) -> Clip {
     import::load(path, &options).unwrap_or_else(|e| panic!("{e}"))
@@ -63,7 +55,7 @@ const TWINS: [(&str, &str); 25] = [
 
 #[test]
 fn amc_and_bvh_of_one_capture_agree() {
-    let Some(folder) = mocap() else { return };
+    let Some(folder) = mocap::folder() else { return };
     let amc = load(&folder.join("asfamc/02_01.amc"), ImportOptions::default());
     let unit = Some(0.0564444);
     let repairs = ImportOptions {
@@ -139,7 +131,7 @@ fn samples_come_back_from_every_file() {
 
 #[test]
 fn captures_come_back_from_every_file() {
-    let Some(folder) = mocap() else { return };
+    let Some(folder) = mocap::folder() else { return };
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder.join("bvh")).unwrap().map(|e| e.unwrap().path()).collect();
     files.sort();
     for file in files {
@@ -148,5 +140,78 @@ fn captures_come_back_from_every_file() {
         clip.root.truncate(frames);
         clip.rotations.truncate(frames * joints);
         round_trips(&clip);
+    }
+}
+
+#[test]
+fn everybody_of_an_exported_crowd_comes_back() {
+    let mut crowd = fixture::crowd();
+    let late = &mut crowd.characters[fixture::WALKER];
+    late.begin = 20;
+    late.root.drain(..20);
+    late.rotations.drain(..20 * JOINT_COUNT);
+    let early = &mut crowd.characters[fixture::SHAKER];
+    early.root.truncate(80);
+    early.rotations.truncate(80 * JOINT_COUNT);
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("formats_crowd.glb");
+    std::fs::write(&path, crowdquilt::export::glb(&crowd)).unwrap();
+    let clips = import::load_all(&path, &ImportOptions::default()).unwrap();
+    assert_eq!(clips.len(), crowd.characters.len());
+    for (i, clip) in clips.iter().enumerate() {
+        let expected = crowdquilt::export::clip(&crowd, i).unwrap();
+        assert_eq!(clip.name, format!("formats_crowd.person_{i}"));
+        assert_eq!((clip.frames(), clip.fps), (expected.frames(), expected.fps));
+        let (mut a, mut b) = (Vec::new(), Vec::new());
+        for frame in 0..clip.frames() {
+            expected.globals(frame, &mut a);
+            clip.globals(frame, &mut b);
+            for (joint, found) in expected.skeleton.joints.iter().zip(&a) {
+                let at = clip.skeleton.find(&joint.name).unwrap();
+                // The file's rotations are 16-bit integers.
+                assert!(found.0.distance(b[at].0) < 2e-4, "person {i} frame {frame} {}", joint.name);
+            }
+        }
+    }
+    let one = ImportOptions { character: Some("person_2".into()), ..Default::default() };
+    assert_eq!(import::load(&path, &one).unwrap(), clips[2]);
+    let error = import::load(&path, &ImportOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("import.character") && error.contains("'person_0', 'person_1'"), "{error}");
+    let nobody = ImportOptions { character: Some("Bob".into()), ..Default::default() };
+    let error = import::load(&path, &nobody).unwrap_err().to_string();
+    assert!(error.contains("formats_crowd.glb") && error.contains("found 'Bob'"), "{error}");
+}
+
+#[test]
+fn an_amc_file_finds_its_skeleton() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("formats_asf");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
+    write("7_01.amc", ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 0 0 0 0 0\n");
+    let asf =
+        ":units\nlength 0.45\n:bonedata\nbegin\nname leg\ndirection 0 -1 0\nlength 20\nend\n:hierarchy\nroot leg\n";
+    let options = |skeleton: Option<&str>| ImportOptions { skeleton: skeleton.map(Into::into), ..Default::default() };
+    let load = |skeleton| import::load(&folder.join("7_01.amc"), &options(skeleton)).map_err(|e| e.to_string());
+    assert!(load(None).unwrap_err().contains("expected the skeleton 7.asf beside it"));
+    write("other.asf", asf);
+    let clip = load(None).unwrap();
+    assert_eq!(clip.name, "7_01");
+    let tip = clip.skeleton.joints[1].tip.unwrap().length();
+    assert!((tip - 20.0 * 0.0254 / 0.45).abs() < 1e-5, "{tip}");
+    write("another.asf", "nothing");
+    assert!(load(None).unwrap_err().contains("found 2 .asf files"));
+    write("7.asf", asf);
+    assert!(load(None).is_ok());
+    assert!(load(Some("another.asf")).unwrap_err().contains("another.asf: line 1: expected :bonedata"));
+    assert!(load(Some("none.asf")).unwrap_err().contains("none.asf"));
+}
+
+#[test]
+fn what_is_no_capture_is_told_what_is() {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("walk.c3d");
+    std::fs::write(&path, [2, 80, 0, 0]).unwrap();
+    let error = import::load(&path, &ImportOptions::default()).unwrap_err().to_string();
+    for word in ["walk.c3d", "BVH", "AMC", "FBX", "glTF"] {
+        assert!(error.contains(word), "{error}");
     }
 }

@@ -2,6 +2,7 @@
 #![no_main]
 
 use crowdquilt::motion::take::TakeFile;
+use crowdquilt_fuzz as _;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import tempfile
+import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
+from math import sin
 from pathlib import Path
 from statistics import median
 
 from rich.table import Table
 
-from crowdquilt import check, patch, samples
+from crowdquilt import check, motion, patch, samples
 from crowdquilt._core import PatchSet, Scene, tile
 
 PAPER = "Hyun et al. 2013, figure 7: Static, 907 patches, 2.93 GHz Core i7"
@@ -75,7 +78,88 @@ def tiling_rows(patches: PatchSet, method: str, prefix: str, seeds: int, say: Sa
     ]
 
 
-AREAS: dict[str, Callable[[int, Say], list[Row]]] = {"tiling": tiling}
+MINUTES = 1.0
+
+
+def captures(seeds: int, say: Say) -> list[Row]:
+    """Frames per second of each importer on a generated walk; beside it the readers on PyPI, where installed."""
+    with tempfile.TemporaryDirectory() as folder:
+        samples.write(Path(folder), 1)
+        bvh = long_bvh(Path(folder) / "walk-normal-a.bvh", Path(folder) / "long.bvh")
+        amc = long_amc(Path(folder) / "long.amc")
+        ours = {path: rate(lambda path=path: len_of(motion.load(path)), seeds) for path in (bvh, amc)}
+        say(f"motion: BVH {ours[bvh]:.0f} and AMC {ours[amc]:.0f} frames/s")
+        rows = [row("motion", "AMC import", ours[amc], "frames/s")]
+        for name, read in public_readers().items():
+            theirs = rate(lambda read=read: read(bvh), 1)
+            say(f"motion: {name} {theirs:.0f} frames/s")
+            rows.append(
+                row("motion", f"BVH import beside {name}", ours[bvh], "frames/s", theirs, f"{name}, here and now")
+            )
+    return [row("motion", "BVH import", ours[bvh], "frames/s"), *rows]
+
+
+def len_of(clip: motion.Clip) -> int:
+    """Frames of a clip."""
+    return clip.frames
+
+
+def rate(read: Callable[[], int], runs: int) -> float:
+    """Frames per second: the median over the runs."""
+    found = []
+    for _ in range(runs):
+        begin = time.perf_counter()
+        frames = read()
+        found.append(frames / (time.perf_counter() - begin))
+    return median(found)
+
+
+def long_bvh(sample: Path, path: Path) -> Path:
+    """The sample's frames again and again, for `MINUTES` at 120 a second."""
+    head, motion_part = sample.read_text().split("MOTION\n")
+    frames = motion_part.splitlines()[2:]
+    wanted = int(MINUTES * 60 * 120)
+    lines = (frames * (wanted // len(frames) + 1))[:wanted]
+    path.write_text(f"{head}MOTION\nFrames: {wanted}\nFrame Time: 0.00833333\n" + "\n".join(lines) + "\n")
+    return path
+
+
+def long_amc(path: Path) -> Path:
+    """A figure of 30 bones in three chains, swinging, as AMC with its ASF."""
+    bones = [f"bone{i}" for i in range(30)]
+    data = "".join(
+        f"begin\nid {i + 1}\nname {b}\ndirection 0 1 0\nlength 3\naxis 0 0 20 XYZ\ndof rx ry rz\nend\n"
+        for i, b in enumerate(bones)
+    )
+    tree = "".join(f"{bones[i - 1] if i % 10 else 'root'} {b}\n" for i, b in enumerate(bones))
+    root = ":root\norder TX TY TZ RX RY RZ\naxis XYZ\nposition 0 0 0\norientation 0 0 0\n"
+    units = ":units\nlength 0.45\nangle deg\n"
+    path.with_suffix(".asf").write_text(f"{units}{root}:bonedata\n{data}:hierarchy\nbegin\n{tree}end\n")
+    with path.open("w") as out:
+        out.write(":FULLY-SPECIFIED\n:DEGREES\n")
+        for frame in range(int(MINUTES * 60 * 120)):
+            angle = 20 * sin(frame / 40)
+            angles = f"{angle:.5f} {angle / 2:.5f} {-angle:.5f}"
+            turns = "\n".join(f"{bone} {angles}" for bone in bones)
+            out.write(f"{frame + 1}\nroot 0 17.5 {frame / 100:.5f} 0 {angle:.5f} 0\n{turns}\n")
+    return path
+
+
+def public_readers() -> dict[str, Callable[[Path], int]]:
+    """What reads BVH on PyPI, of what is installed: each delivers the number of frames it has read."""
+    readers: dict[str, Callable[[Path], int]] = {}
+    with suppress(ImportError):
+        import bvhio
+
+        readers["bvhio"] = lambda path: bvhio.readAsBvh(str(path)).FrameCount
+    with suppress(ImportError):
+        import bvh
+
+        readers["bvh"] = lambda path: bvh.Bvh(path.read_text()).nframes
+    return readers
+
+
+AREAS: dict[str, Callable[[int, Say], list[Row]]] = {"motion": captures, "tiling": tiling}
 
 
 def table(rows: list[Row]) -> Table:

@@ -4,29 +4,28 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from crowdquilt import check, motion
 from crowdquilt._core import Clip, Crowd, CrowdquiltError, PatchSet
 
-JUMP = 8.0  # metres per second from one frame to the next that no hips reach
 SLIDE = 0.10  # metres that a planted foot may move in a good capture
-FEET = {
-    "left": ("LeftToeBase", "LeftToe", "left_toe", "lFoot"),
-    "right": ("RightToeBase", "RightToe", "right_toe", "rFoot"),
-}
+BELOW = 0.05  # metres that a foot may be below the floor at one frame in a hundred
 
 
 @dataclass(frozen=True)
 class Repairs:
-    """What to repair of a capture before it is measured."""
+    """What to repair of a capture before it is measured; what is None is left to the preset or the file."""
 
+    preset: str | None = None
     metres_per_unit: float | None = None
     fps: float | None = None
-    drop_first_frames: int = 0
-    restore_thorax: bool = False
+    drop_first_frames: int | None = None
+    restore_thorax: bool | None = None
+    rig: str | None = None
+    character: str | int | None = None
 
 
 def inspect(path: Path, repairs: Repairs | None = None) -> dict[str, Any]:
@@ -37,9 +36,7 @@ def inspect(path: Path, repairs: Repairs | None = None) -> dict[str, Any]:
         return inspect_crowd(Crowd.load(path))
     if magic.startswith(b"CQPATCH"):
         return inspect_set(PatchSet.load(path))
-    repairs = repairs or Repairs()
-    clip = motion.load(path, **vars(repairs))
-    return inspect_clip(clip, repairs)
+    return inspect_clip(motion.load(path, **vars(repairs or Repairs())))
 
 
 def inspect_crowd(crowd: Crowd) -> dict[str, Any]:
@@ -77,19 +74,10 @@ def inspect_set(patches: PatchSet) -> dict[str, Any]:
     }
 
 
-def inspect_clip(clip: Clip, repairs: Repairs) -> dict[str, Any]:
+def inspect_clip(clip: Clip) -> dict[str, Any]:
     """The figures of a capture."""
-    warnings = clip_warnings(clip, repairs)
-    slide: float | None = None
-    plants = 0
-    try:
-        found = clip.plants()
-        plants, slide = len(found), foot_slide(clip, found)
-        if slide is not None and slide > SLIDE:
-            warnings.append(f"a planted foot slides {slide:.2f} m over the ground")
-    except CrowdquiltError as error:
-        warnings.append(f"cannot be put on the canonical skeleton: {error}")
-    return {
+    warnings = [message for _, message, _ in clip.symptoms()]
+    told: dict[str, Any] = {
         "file": "capture",
         "name": clip.name,
         "joints": len(clip.joints),
@@ -98,40 +86,36 @@ def inspect_clip(clip: Clip, repairs: Repairs) -> dict[str, Any]:
         "seconds": clip.seconds,
         "height_m": clip.height_m,
         "path_m": float(np.linalg.norm(np.diff(clip.root[:, [0, 2]], axis=0), axis=1).sum()),
-        "foot_plants": plants,
-        "foot_slide": slide,
-        "warnings": warnings,
     }
+    try:
+        quality = clip.quality()
+        told |= {"rig": clip.rig()[0]} | quality
+        warnings += quality_warnings(quality)
+    except CrowdquiltError as error:
+        told |= {"rig": None, "foot_plants": 0, "foot_slide": None}
+        warnings.append(f"cannot be put on the canonical skeleton: {error}")
+    return told | {"warnings": warnings}
 
 
-def foot_slide(clip: Clip, plants: list[tuple[Literal["left", "right"], float, float]]) -> float | None:
-    """The farthest a planted foot gets from its middle place over the ground, metres; None without plants."""
-    positions, worst = clip.positions(), None
-    for foot, begin, end in plants:
-        joint = next((clip.joints.index(name) for name in FEET[foot] if name in clip.joints), None)
-        if joint is not None:
-            way = positions[int(begin * clip.fps) : int(end * clip.fps) + 1, joint][:, [0, 2]]
-            slide = float(np.linalg.norm(way - np.median(way, axis=0), axis=1).max())
-            worst = slide if worst is None else max(worst, slide)
-    return worst
-
-
-def clip_warnings(clip: Clip, repairs: Repairs) -> list[str]:
-    """What looks wrong with a capture, each with the option that may mend it."""
+def quality_warnings(quality: dict[str, Any]) -> list[str]:
+    """What is bad about a motion's figures."""
     warnings = []
-    if repairs.metres_per_unit is None:
-        warnings.append("the unit is guessed from the standing height; say it with --metres-per-unit")
-    if not 1.3 <= clip.height_m <= 2.2:
-        warnings.append(f"the person is {clip.height_m:.2f} m tall: is --metres-per-unit right?")
-    # From one frame to the next every joint moves a little; a T-pose put in front makes all of them jump.
-    steps = np.linalg.norm(np.diff(clip.positions(), axis=0), axis=2).max(axis=1) * clip.fps
-    first = int(np.argmax(steps > JUMP)) if (steps > JUMP).any() else None
-    if first is not None and first < 8 and not repairs.drop_first_frames:
-        warnings.append(f"the pose jumps after frame {first}, like a T-pose put in front: try --drop-first {first + 1}")
-    elif first is not None:
-        count = int((steps > JUMP).sum())
-        warnings.append(f"the pose jumps at {count} frames, first after frame {first} ({steps[first]:.0f} m/s)")
-    neck = next((i for i, name in enumerate(clip.joints) if name == "Neck"), None)
-    if neck is not None and not clip.offsets[neck].any():
-        warnings.append("the neck has no bone below it, as in cgspeed's CMU files: try --restore-thorax")
+    slide = quality["foot_slide"]
+    if slide is not None and slide > SLIDE:
+        warnings.append(f"a planted foot slides {slide:.2f} m over the ground")
+    if quality["below_floor_p99_m"] > BELOW:
+        warnings.append(f"feet are {quality['below_floor_p99_m']:.2f} m below the floor that they stand on")
     return warnings
+
+
+def inspect_take(paths: list[Path], repairs: Repairs | None = None) -> dict[str, Any]:
+    """Several captures as one take: each one's figures, how near people come, and what speaks against it."""
+    repairs = repairs or Repairs()
+    clips = [motion.load(path, **vars(repairs)) for path in paths]
+    people = [inspect_clip(clip) for clip in clips]
+    distances = [
+        {"people": [clips[a].name, clips[b].name], "nearest_m": nearest, "farthest_m": farthest}
+        for a, b, nearest, farthest in motion.take_distances(clips)
+    ]
+    warnings = [message for message, _ in motion.check_take(clips)]
+    return {"file": "take", "people": people, "distances": distances, "warnings": warnings}

@@ -25,7 +25,7 @@ mod _core {
     #[pymodule_export]
     use super::export::{export_bvh, export_glb};
     #[pymodule_export]
-    use super::motion::{Clip, load_clip};
+    use super::motion::{Clip, check_take, import_presets, load_clip, take_distances};
     #[pymodule_export]
     use super::patch::{Kind, PatchSet, Role, cut_patches};
     #[pymodule_export]

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import crowdquilt as cq
-from crowdquilt.inspection import FEET, Repairs, foot_slide, inspect
+from crowdquilt import plot
+from crowdquilt.inspection import Repairs, inspect, inspect_take
 
 METRES = Repairs(metres_per_unit=1.0)
 
@@ -58,25 +59,68 @@ def test_a_jump_later_on_is_found(tmp_path: Path, text: str) -> None:
 
 
 def test_a_lost_thorax_is_found(tmp_path: Path) -> None:
-    joints = "\tJOINT Neck\n\t{\n\t\tOFFSET 0 0 0\n\t\tCHANNELS 3 Zrotation Xrotation Yrotation\n"
+    def joint(name: str, inside: str, offset: str = "0 0 0") -> str:
+        return f"JOINT {name}\n{{\nOFFSET {offset}\nCHANNELS 3 Zrotation Xrotation Yrotation\n{inside}}}\n"
+
+    end = "End Site\n{\nOFFSET 0 0.3 0\n}\n"
+    chest = joint("Chest", "".join(joint(name, end) for name in ("Neck", "LeftArm", "RightArm")), "0 1.4 0")
     six = "Xposition Yposition Zposition Zrotation Xrotation Yrotation"
-    head = f"HIERARCHY\nROOT Hips\n{{\n\tOFFSET 0 0 0\n\tCHANNELS 6 {six}\n"
-    tail = "\t\tEnd Site\n\t\t{\n\t\t\tOFFSET 0 1.7 0\n\t\t}\n\t}\n}\n"
-    motion = "MOTION\nFrames: 2\nFrame Time: 0.033333\n" + "0 0 0 0 0 0 0 0 0\n" * 2
-    told = found(tmp_path, head + joints + tail + motion)
+    head = f"HIERARCHY\nROOT Hips\n{{\nOFFSET 0 0 0\nCHANNELS 6 {six}\n{chest}}}\n"
+    motion = "MOTION\nFrames: 2\nFrame Time: 0.033333\n" + "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n" * 2
+    told = found(tmp_path, head + motion)
     assert "--restore-thorax" in told
-    assert "cannot be put on the canonical skeleton" in told, "a rig of no family"
+    assert "cannot be put on the canonical skeleton" in told, "no rig of a person"
 
 
-def test_a_foot_that_slides_is_measured(tmp_path: Path, text: str) -> None:
+def test_figures_of_a_good_capture(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "clip.bvh"
+    path.write_text(text)
+    told = inspect(path, METRES)
+    assert told["rig"] == "canonical" and told["foot_plants"] > 0
+    assert told["foot_slide_median"] <= told["foot_slide"] < 0.05
+    assert told["pops_secs"] == [] and told["below_floor_m"] < 0.03
+    assert {"joints", "frames", "fps", "seconds", "height_m", "foot_slide", "warnings"} <= told.keys()
+
+
+def test_a_rig_file_names_joints(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "clip.bvh"
+    path.write_text(text.replace("left_hand", "Thing"))
+    assert "left_hand" in "".join(inspect(path, METRES)["warnings"])
+    (tmp_path / "rig.toml").write_text('left_hand = "Thing"\n')
+    assert inspect(path, Repairs(metres_per_unit=1.0, rig="rig.toml"))["warnings"] == []
+
+
+def test_a_preset_repairs(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "clip.bvh"
+    path.write_text(text)
+    whole, cut = inspect(path, METRES), inspect(path, Repairs(preset="cmu-daz", metres_per_unit=1.0))
+    assert cut["frames"] == whole["frames"] - 8
+    with pytest.raises(cq.CrowdquiltError, match="cmu-daz-128"):
+        inspect(path, Repairs(preset="nonsense"))
+
+
+def test_people_of_a_take_are_checked(captures: Path, tmp_path: Path, text: str) -> None:
+    together = next(
+        path for path in sorted(captures.glob("*-a.bvh")) if path.with_name(path.name[:-5] + "b.bvh").exists()
+    )
+    pair = [together, together.with_name(together.name[:-5] + "b.bvh")]
+    told = inspect_take(pair, METRES)
+    assert len(told["people"]) == 2 and told["warnings"] == []
+    assert 0.1 < told["distances"][0]["nearest_m"] < told["distances"][0]["farthest_m"] < 20
+    twice = inspect_take([together, together], METRES)
+    assert "inside each other" in "".join(twice["warnings"])
+
+
+def test_a_capture_is_drawn(tmp_path: Path, text: str) -> None:
     path = tmp_path / "clip.bvh"
     path.write_text(text)
     clip = cq.motion.load(path, metres_per_unit=1.0)
-    joint = clip.joints.index(next(name for name in FEET["left"] if name in clip.joints))
-    way = clip.positions()[:31, joint][:, [0, 2]]
-    expected = np.linalg.norm(way - np.median(way, axis=0), axis=1).max()
-    assert foot_slide(clip, [("left", 0.0, 30 / clip.fps)]) == pytest.approx(expected)
-    assert foot_slide(clip, []) is None
+    figure = plot.capture([clip], tmp_path / "clip.png")
+    assert (tmp_path / "clip.png").stat().st_size > 5000
+    bars = figure.axes[1].collections
+    drawn = sum(len(bar.get_paths()) for bar in bars)
+    assert drawn == len(clip.plants()), "a bar for every foot plant"
+    np.testing.assert_allclose(figure.axes[2].lines[0].get_ydata(), clip.variation(0.5))
 
 
 def test_crowds_and_sets_are_told_apart_by_content(tmp_path: Path, walkers: Path, patches: Path) -> None:

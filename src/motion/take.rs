@@ -74,7 +74,8 @@ pub enum Character {
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Offset {
-    /// When in the take the capture begins, seconds; where it is negative, its beginning is cut off.
+    /// When the capture begins, seconds. Where any of a take has one, all are cut to the time that they share, with which
+    /// the take's clock begins.
     pub time: f32,
     /// Moved along x, metres (of the capture, before it is scaled to the canonical body).
     pub x: f32,

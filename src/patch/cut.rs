@@ -11,7 +11,7 @@ use super::file::filed_rotation;
 use super::mirror::{add_mirrored, find_or_add};
 use super::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};
 use crate::motion::take::{TakeContact, TakeFile, TakePatch, TakeRole};
-use crate::motion::{FPS, Motion, Plant, retarget, together};
+use crate::motion::{FPS, Motion, Plant, reach, retarget, together};
 use crate::{Error, Result};
 
 /// How takes are cut.
@@ -124,6 +124,7 @@ pub fn load_take(path: &Path, take: &TakeFile, options: &CutOptions) -> Result<V
         }
         other => other,
     })?;
+    reach::keep(&mut motions, &take.contacts);
     if !take.plants.is_empty() {
         for (person, motion) in motions.iter_mut().enumerate() {
             let last = motion.len() as u32 - 1;

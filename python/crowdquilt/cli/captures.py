@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from rich.markup import escape
 
-from crowdquilt import inspection, patch, samples
+from crowdquilt import inspection, motion, patch, samples
 from crowdquilt.cli.app import app, console, example
 from crowdquilt.cli.tables import facts, kind_table
 from crowdquilt.outputs import whole_folder
+from crowdquilt.plot.capture import capture as draw
 
 
 @app.command("samples", epilog=example("samples -o out/samples"))
@@ -32,26 +34,70 @@ def write_samples(
 
 @app.command(
     "inspect",
-    epilog=example("inspect walk.bvh --metres-per-unit 0.01", "inspect out/demo/crowd.crowd --json"),
+    epilog=example(
+        "inspect walk.bvh --preset cmu-mb",
+        "inspect walk.bvh --plot walk.png",
+        "inspect a.bvh b.bvh",
+        "inspect out/demo/crowd.crowd --json",
+    ),
 )
 def inspect_file(
-    file: Annotated[Path, typer.Argument(help="A capture (.bvh), patch set (.patches) or crowd (.crowd).")],
+    files: Annotated[
+        list[Path], typer.Argument(help="A capture, several of one take, a patch set (.patches) or a crowd (.crowd).")
+    ],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    plot: Annotated[Path | None, typer.Option(help="Draw a capture: path, foot plants, variation of the pose.")] = None,
+    preset: Annotated[
+        str | None, typer.Option(help="Repairs for well-known files: cmu-mb, cmu-max, cmu-daz, cmu-daz-128, cmu-asf.")
+    ] = None,
     metres_per_unit: Annotated[float | None, typer.Option(help="Unit of a capture; guessed if not given.")] = None,
     fps: Annotated[float | None, typer.Option(help="True frames per second, where the header is wrong.")] = None,
-    drop_first: Annotated[int, typer.Option(min=0, help="Leading frames (T-poses) to drop.")] = 0,
-    restore_thorax: Annotated[bool, typer.Option(help="Put back the bone that cgspeed's CMU files lost.")] = False,
+    drop_first: Annotated[int | None, typer.Option(min=0, help="Leading frames (T-poses) to drop.")] = None,
+    restore_thorax: Annotated[
+        bool | None, typer.Option(help="Put back the bone that cgspeed's CMU files lost.", show_default=False)
+    ] = None,
+    rig: Annotated[
+        Path | None, typer.Option(help="File that says which joint is which (hips = 'Pelvis', ...).")
+    ] = None,
+    character: Annotated[str | None, typer.Option(help="One of several people in the file: number or name.")] = None,
 ) -> None:
-    """Tell what a file holds and what looks wrong with it."""
-    repairs = inspection.Repairs(metres_per_unit, fps, drop_first, restore_thorax)
-    found = inspection.inspect(file, repairs)
+    """Tell what a file holds and what looks wrong with it; of several captures, whether they can be one take."""
+    who = int(character) if character is not None and character.isdigit() else character
+    where = str(rig.absolute()) if rig is not None else None
+    repairs = inspection.Repairs(preset, metres_per_unit, fps, drop_first, restore_thorax, where, who)
+    found = inspection.inspect(files[0], repairs) if len(files) == 1 else inspection.inspect_take(files, repairs)
+    if plot is not None:
+        draw([motion.load(file, **vars(repairs)) for file in files], plot)
     if as_json:
         print(json.dumps(found, indent=2))
-        return
-    warnings = found.pop("warnings", [])
-    console.print(facts(found))
+    else:
+        tell(found)
+
+
+def readable(value: Any) -> Any:
+    """The worst of something as figure, joint and time; times to hundredths; all else as it is."""
+    if isinstance(value, tuple):
+        figure, joint, secs = value
+        return f"{figure:.1f} ({joint} at {secs:.2f} s)"
+    if isinstance(value, list) and all(isinstance(v, float) for v in value):
+        return ", ".join(f"{v:.2f}" for v in value) or "none"
+    return value
+
+
+def tell(found: dict[str, Any]) -> None:
+    """Print what was found, the warnings last."""
+    warnings, people = found.pop("warnings", []), found.pop("people", [])
+    for person in people:
+        tell(person)
+        console.print()
+    for apart in found.pop("distances", []):
+        a, b = apart["people"]
+        near, far = apart["nearest_m"], apart["farthest_m"]
+        console.print(f"{escape(a)} and {escape(b)}: {near:.2f} to {far:.2f} m from each other")
+    if not people:
+        console.print(facts({name: readable(value) for name, value in found.items()}))
     for warning in warnings:
-        console.print(f"[yellow]warning[/yellow] {warning}", soft_wrap=True)
+        console.print(f"[yellow]warning[/yellow] {escape(warning)}", soft_wrap=True)
 
 
 @app.command(

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use glam::{Quat, Vec3};
+use rayon::prelude::*;
 
 use super::hierarchy::{self, Channel, Hierarchy, Line, bad, number, quoted};
 use crate::motion::Clip;
@@ -39,10 +40,10 @@ pub fn read(bytes: &[u8]) -> Result<Clip> {
     })?;
     let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate().map(|(i, line)| (i + 1, line));
     let hierarchy = hierarchy::read(&mut lines)?;
-    let mut lines = lines.filter(|(_, text)| !text.trim().is_empty()).peekable();
+    let mut lines = lines.filter(|(_, text)| !text.trim().is_empty());
     let (promised, header_line) = frame_count(lines.next())?;
     let fps = frame_rate(lines.next(), header_line)?;
-    let (root, rotations) = read_frames(&hierarchy, &mut lines, promised, header_line)?;
+    let (root, rotations) = read_frames(&hierarchy, lines, promised, header_line)?;
     Ok(Clip { name: String::new(), skeleton: hierarchy.skeleton, fps, root, rotations })
 }
 
@@ -72,54 +73,71 @@ fn frame_rate(line: Option<Line>, before: usize) -> Result<f32> {
     Err(bad(at, format!("expected a frame time above 0 and at most 1 second, found {}", quoted(value))))
 }
 
+/// Places of the root and rotations of all joints, frame-major.
+type Frames = (Vec<Vec3>, Vec<Quat>);
+
+/// Reads the frames in parallel. One that is too short for its numbers is read last and alone, lest it takes memory
+/// for nothing.
 fn read_frames<'a>(
     hierarchy: &Hierarchy,
-    lines: &mut impl Iterator<Item = Line<'a>>,
+    lines: impl Iterator<Item = Line<'a>>,
     promised: u64,
     header_line: usize,
-) -> Result<(Vec<Vec3>, Vec<Quat>)> {
-    let (mut root, mut rotations) = (Vec::new(), Vec::new());
-    let mut last_line = header_line + 1;
-    for (line, text) in lines {
-        if root.len() as u64 == promised {
-            return Err(bad(line, format!("expected the end after {promised} frames, found {}", quoted(text.trim()))));
-        }
-        read_frame(hierarchy, line, text, &mut root, &mut rotations)?;
-        last_line = line;
+) -> Result<Frames> {
+    let lines: Vec<Line> = lines.collect();
+    let joints = hierarchy.skeleton.joints.len();
+    let shortest = 2 * hierarchy.channels.len() - 1;
+    let promised_here = usize::try_from(promised).unwrap_or(usize::MAX).min(lines.len());
+    let whole = lines.iter().take(promised_here).position(|(_, text)| text.len() < shortest).unwrap_or(promised_here);
+    let mut root = vec![Vec3::ZERO; whole];
+    let mut rotations = vec![Quat::IDENTITY; whole * joints];
+    let frames = rotations.par_chunks_mut(joints).zip(&mut root).zip(&lines).enumerate();
+    let read = frames.map(|(frame, ((pose, root), &line))| read_frame(hierarchy, frame, line, root, pose));
+    if let Some(error) = read.find_map_first(Result::err) {
+        return Err(error);
     }
-    if (root.len() as u64) < promised {
-        return Err(bad(last_line, format!("expected {promised} frames, found the end after {}", root.len())));
+    if whole < promised_here {
+        let (mut place, mut pose) = (Vec3::ZERO, vec![Quat::IDENTITY; joints]);
+        read_frame(hierarchy, whole, lines[whole], &mut place, &mut pose)?;
+    }
+    if let Some((line, text)) = lines.get(promised_here) {
+        return Err(bad(*line, format!("expected the end after {promised} frames, found {}", quoted(text.trim()))));
+    }
+    if (lines.len() as u64) < promised {
+        let last_line = lines.last().map_or(header_line + 1, |line| line.0);
+        return Err(bad(last_line, format!("expected {promised} frames, found the end after {}", lines.len())));
     }
     Ok((root, rotations))
 }
 
-fn read_frame(h: &Hierarchy, line: usize, text: &str, root: &mut Vec<Vec3>, rotations: &mut Vec<Quat>) -> Result<()> {
+fn read_frame(h: &Hierarchy, frame: usize, (line, text): Line, root: &mut Vec3, pose: &mut [Quat]) -> Result<()> {
     let place = |found: usize| {
         let expected = format!("expected {} numbers", h.channels.len());
-        bad(line, format!("frame {}: {expected}, found {found}", root.len()))
+        bad(line, format!("frame {frame}: {expected}, found {found}"))
     };
-    let mut words = text.split_whitespace();
-    let mut position = Vec3::ZERO;
-    let first = rotations.len();
-    rotations.resize(first + h.skeleton.joints.len(), Quat::IDENTITY);
+    let mut words = text.split_ascii_whitespace();
     for (i, &(joint, channel)) in h.channels.iter().enumerate() {
         let value = number(words.next().ok_or_else(|| place(i))?, line)?;
         match channel {
-            Channel::Position(axis) if joint == 0 => position[axis] = value,
+            Channel::Position(axis) if joint == 0 => root[axis] = value,
             Channel::Position(_) => {}
-            Channel::Rotation(axis) => {
-                let turn = Quat::from_axis_angle(Vec3::AXES[axis], value.to_radians());
-                rotations[first + joint] *= turn;
-            }
+            Channel::Rotation(axis) => pose[joint] *= turn(axis, value),
         }
     }
     let more = words.count();
     if more > 0 {
         return Err(place(h.channels.len() + more));
     }
-    for q in &mut rotations[first..] {
+    for q in pose {
         *q = q.normalize();
     }
-    root.push(position);
     Ok(())
+}
+
+/// A turn by degrees about an axis of the frame.
+fn turn(axis: usize, degrees: f32) -> Quat {
+    let (sin, cos) = (0.5 * degrees.to_radians()).sin_cos();
+    let mut v = Vec3::ZERO;
+    v[axis] = sin;
+    Quat::from_xyzw(v.x, v.y, v.z, cos)
 }

@@ -56,20 +56,36 @@ pub fn load_all(path: &Path, options: &ImportOptions) -> Result<Vec<Clip>> {
     finish(path, capture, options).map_err(|e| e.in_file(path))
 }
 
+/// Reads and repairs all characters of a capture whose content is `bytes`; `name` stands in for the file's name.
+/// Files beside it (the ASF of an AMC, the buffers of a glTF) are not looked for.
+///
+/// # Errors
+/// As [`load_all`].
+pub fn from_bytes(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Vec<Clip>> {
+    let path = Path::new(name);
+    let capture = match Format::of(path, bytes)? {
+        Format::Amc => Err(Error::invalid("", "format", "expected a file on disk, found AMC without its ASF")),
+        format => alone(format, bytes, None, options),
+    };
+    capture.and_then(|capture| finish(path, capture, options)).map_err(|e| e.in_file(path))
+}
+
 fn read(path: &Path, bytes: &[u8], options: &ImportOptions) -> Result<Capture> {
+    let folder = path.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p });
     match Format::of(path, bytes)? {
-        Format::Bvh => {
-            let clip = bvh::read(bytes).map_err(|e| e.in_file(path))?;
-            Ok(Capture { clips: vec![clip], metres_per_unit: None })
-        }
         // Two files: it names the one that is bad.
         Format::Amc => asfamc::load(path, bytes, options.skeleton.as_deref()),
-        Format::Gltf => {
-            let folder = path.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p });
-            let source = gltf::Source { folder, animation: options.animation.as_deref(), fps: sampled(options)? };
-            gltf::read(bytes, source).map_err(|e| e.in_file(path))
-        }
-        Format::Fbx => fbx::read(bytes, options.animation.as_deref(), sampled(options)?).map_err(|e| e.in_file(path)),
+        format => alone(format, bytes, folder, options).map_err(|e| e.in_file(path)),
+    }
+}
+
+/// Reads a format that needs one file, but for buffers in the folder.
+fn alone(format: Format, bytes: &[u8], folder: Option<&Path>, options: &ImportOptions) -> Result<Capture> {
+    let (animation, fps) = (options.animation.as_deref(), sampled(options)?);
+    match format {
+        Format::Gltf => gltf::read(bytes, gltf::Source { folder, animation, fps }),
+        Format::Fbx => fbx::read(bytes, animation, fps),
+        Format::Bvh | Format::Amc => Ok(Capture { clips: vec![bvh::read(bytes)?], metres_per_unit: None }),
     }
 }
 

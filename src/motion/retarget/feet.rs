@@ -19,6 +19,9 @@ const MAX_DROP: f32 = 0.04;
 /// Smoothing of that sinking, seconds.
 const DROP_SIGMA: f32 = 0.07;
 
+/// Least height of the ball of a foot that is not planted, metres.
+const LEAST: f32 = 0.0;
+
 /// Hip joint, knee, ankle, ball of each leg.
 const LEGS: [(Foot, [usize; 4]); 2] = [
     (Foot::Left, [LEFT_UP_LEG, LEFT_LEG, LEFT_FOOT, LEFT_TOE]),
@@ -29,7 +32,9 @@ const LEGS: [(Foot, [usize; 4]); 2] = [
 pub(super) fn pin(motion: &mut Motion) {
     let targets = LEGS.map(|(foot, leg)| {
         let planted: Vec<Plant> = motion.plants.iter().filter(|p| p.foot == foot).copied().collect();
-        let moves = corrections(&plants::trajectory(motion, leg[3]), &planted);
+        let ball = plants::trajectory(motion, leg[3]);
+        let mut moves = corrections(&ball, &planted);
+        keep_above(&ball, &mut moves, &planted);
         let ankle = plants::trajectory(motion, leg[2]);
         ankle.iter().zip(moves).map(|(&p, by)| p + by).collect::<Vec<Vec3>>()
     });
@@ -68,6 +73,14 @@ fn corrections(ball: &[Vec3], planted: &[Plant]) -> Vec<Vec3> {
     out
 }
 
+/// Raises a foot that is not planted where its ball would sink below [`LEAST`].
+fn keep_above(ball: &[Vec3], moves: &mut [Vec3], planted: &[Plant]) {
+    let stands = |f: usize| planted.iter().any(|p| (p.begin as usize..=p.end as usize).contains(&f));
+    for (f, by) in moves.iter_mut().enumerate().filter(|&(f, _)| !stands(f)) {
+        by.y += (LEAST - ball[f].y - by.y).max(0.0);
+    }
+}
+
 /// Lowers the hips, smoothly, where a leg would be too short for its ankle's new place.
 fn drop_hips(motion: &mut Motion, targets: &[Vec<Vec3>; 2]) {
     let mut globals = Vec::with_capacity(JOINT_COUNT);
@@ -98,6 +111,7 @@ fn bend_leg(pose: &mut [Quat], globals: &[(Vec3, Quat)], leg: [usize; 4], target
     let [hip, knee, ankle, ball] = leg;
     let at = |j: usize| globals[j].0;
     if at(ankle).distance(target) < 1e-4 {
+        pose[ball] = (pose[ball] * lift_toe(at(ball), globals[ball].1)).normalize();
         return;
     }
     let (swing, bend, reached) = two_bone(at(hip), at(knee), at(ankle), target, facing, STRETCH);

@@ -96,9 +96,12 @@ fn bend_toes(clip: &mut Clip) {
 /// that sinks by up to [`TOE_SLACK`] is left alone.
 pub(super) fn lift_toe(ball: Vec3, toe: Quat) -> Quat {
     let tip = canonical().joints[LEFT_TOE].tip.expect("toes have tips");
-    let sink = (toe * tip).y.min(0.0) + (ball.y - PLANTED).max(0.0) + TOE_SLACK;
-    if sink >= 0.0 {
+    let (down, may) = (-(toe * tip).y, (ball.y - PLANTED).max(0.0) + TOE_SLACK);
+    if down <= may {
         return Quat::IDENTITY;
     }
-    Quat::from_rotation_x(-(-sink / tip.length()).clamp(0.0, 1.0).asin())
+    // About the level axis across the toe, wherever the foot has rolled to.
+    let across = (toe * tip).cross(Vec3::Y).try_normalize().unwrap_or(toe * Vec3::NEG_X);
+    let pitch = |drop: f32| (drop / tip.length()).min(1.0).asin();
+    Quat::from_axis_angle(toe.inverse() * across, pitch(down) - pitch(may)).normalize()
 }
