@@ -193,3 +193,6 @@ pub(crate) fn clip(
 ) -> Result<Clip> {
     convert::clip(tree, figure, timing, local)
 }
+
+#[cfg(test)]
+mod tests;

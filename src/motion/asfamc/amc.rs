@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use glam::{Quat, Vec3};
 use rayon::prelude::*;
 
-use super::asf::{Bone, Channel, Figure};
+use super::asf::{Bone, Figure};
+use super::channel::Channel;
 use super::words::{quoted, text};
 use crate::motion::{Clip, JointId};
 use crate::{Error, Result};

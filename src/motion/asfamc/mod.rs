@@ -2,13 +2,15 @@
 
 mod amc;
 mod asf;
+mod channel;
 mod load;
 #[cfg(test)]
 mod tests;
 mod words;
 
 pub use amc::read;
-pub use asf::{Bone, Figure, Turns, read as read_skeleton};
+pub use asf::{Bone, Figure, read as read_skeleton};
+pub use channel::Turns;
 pub(crate) use load::load;
 
 /// Frames per second of CMU's captures; the format has none.
