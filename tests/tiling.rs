@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use crowdquilt::check::{self, check};
 use crowdquilt::geom::Polygon;
 use crowdquilt::patch::{PatchSet, cut_folder};
+use crowdquilt::refine::refine_crowd;
 use crowdquilt::samples;
 use crowdquilt::stage::Crowd;
 use crowdquilt::tiling::{Options, Outcome, Scene, Status, tile};
@@ -132,12 +133,13 @@ fn real_captures_make_a_perfect_crowd() {
 }
 
 #[test]
-fn files_keep_sets_and_crowds_bit_by_bit() {
+fn files_keep_sets_and_crowds_bit_by_bit_and_bodies_can_be_made_anew() {
     let set = sample_set();
     assert!(PatchSet::from_bytes(&set.to_bytes()).unwrap() == set, "the set changes when it is saved");
     let scene = Scene { characters: 12, interaction: 0.1, duration_secs: 8.0, ..Scene::demo() };
     let crowd = run(&scene, &set, 3).crowd;
     assert!(Crowd::from_bytes(&crowd.to_bytes()).unwrap() == crowd, "the crowd changes when it is saved");
+    assert!(refine_crowd(&crowd) == crowd, "bodies made anew from the fragments differ");
 }
 
 fn mocap() -> Option<PathBuf> {

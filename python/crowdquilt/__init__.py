@@ -2,12 +2,12 @@
 
 The modules are the stages of the pipeline, named like those of the Rust core::
 
-    samples -> motion -> patch -> tiling -> stage -> check, export
+    samples -> motion -> patch -> tiling (refine) -> stage -> check, export
 
 Metres, seconds, radians; right-handed, y up, the ground is the xz plane. Motion runs at 30 frames per second.
 """
 
-from crowdquilt import check, export, motion, patch, samples, stage, tiling
+from crowdquilt import check, export, motion, patch, refine, samples, stage, tiling
 from crowdquilt._core import (
     Clip,
     Crowd,
@@ -40,6 +40,7 @@ __all__ = [
     "export",
     "motion",
     "patch",
+    "refine",
     "samples",
     "stage",
     "tiling",

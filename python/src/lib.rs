@@ -11,6 +11,7 @@ mod export;
 mod motion;
 mod numbers;
 mod patch;
+mod refine;
 mod samples;
 mod stage;
 mod tiling;
@@ -27,6 +28,8 @@ mod _core {
     use super::motion::{Clip, load_clip};
     #[pymodule_export]
     use super::patch::{Kind, PatchSet, Role, cut_patches};
+    #[pymodule_export]
+    use super::refine::refine_crowd;
     #[pymodule_export]
     use super::samples::write_samples;
     #[pymodule_export]

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::limits::Limits;
 use super::part::Part;
 use super::report::{Row, Worst};
-use crate::motion::{Foot, Plant, canonical, joint};
+use crate::motion::{Foot, Plant, joint};
 use crate::stage::{Character, Crowd};
 
 /// The rows of clause 6. Slide is the largest distance between any two ground positions of the ball of the foot (its
@@ -46,7 +46,7 @@ fn sinking(crowd: &Crowd) -> Worst {
         for i in 0..character.frames() {
             character.globals(i, &mut globals);
             for toe in [joint::LEFT_TOE, joint::RIGHT_TOE] {
-                let tip = canonical().joints[toe].tip.map(|tip| globals[toe].0 + globals[toe].1 * tip);
+                let tip = character.skeleton().joints[toe].tip.map(|tip| globals[toe].0 + globals[toe].1 * tip);
                 let lowest = tip.into_iter().chain([globals[toe].0, globals[toe - 1].0]).map(|p| p.y);
                 let depth = -lowest.fold(f32::INFINITY, f32::min);
                 worst.offer(depth.max(0.0) as f64, || format!("character {c}, frame {}", character.begin as usize + i));

@@ -11,8 +11,8 @@ use glam::{Quat, Vec3};
 use rayon::prelude::*;
 
 use crate::motion::{JOINT_COUNT, Motion, canonical};
-use crate::patch::PatchKind;
-use crate::stage::FragmentUse;
+use crate::patch::{PatchKind, filed_rotation};
+use crate::stage::{Character, Crowd, FragmentUse};
 
 pub use fit::{Hold, fit, holds};
 
@@ -94,4 +94,23 @@ pub fn refine_all(people: &[Vec<Segment>], last_frame: u32) -> Vec<Body> {
 fn smoothstep(x: f32) -> f32 {
     let x = x.clamp(0.0, 1.0);
     x * x * (3.0 - 2.0 * x)
+}
+
+/// A crowd's full bodies made anew from its fragments and builds alone: what tiling ends with, as a pass of its own. A
+/// crowd as it was baked comes out as it is. O(people x frames), in parallel over people.
+pub fn refine_crowd(crowd: &Crowd) -> Crowd {
+    let people: Vec<Vec<Segment>> = crowd.characters.iter().map(|c| segments_of(crowd, c)).collect();
+    let bodies = refine_all(&people, crowd.domain.last_frame);
+    let dress = |((body, segments), c): ((Body, &Vec<Segment>), &Character)| {
+        let body = fit(&body, &holds(segments, body.begin), &c.build);
+        let rotations = body.rotations.into_iter().map(filed_rotation).collect();
+        Character { begin: body.begin, root: body.root, rotations, ..c.clone() }
+    };
+    let characters = bodies.into_par_iter().zip(&people).zip(&crowd.characters).map(dress).collect();
+    Crowd { characters, ..crowd.clone() }
+}
+
+fn segments_of<'a>(crowd: &'a Crowd, character: &'a Character) -> Vec<Segment<'a>> {
+    let kind = |placed: &FragmentUse| &crowd.set.kinds[crowd.instances[placed.instance as usize].kind as usize];
+    character.fragments.iter().map(|placed| Segment { kind: kind(placed), placed }).collect()
 }
