@@ -38,37 +38,12 @@ fn every_capture_of_the_index_imports_by_its_row() {
     for row in mocap::rows(&folder) {
         let clip = import::load(&row.file, &row.import).unwrap();
         assert_eq!(clip.frames(), row.frames - row.import.drop_first_frames.unwrap() as usize, "{}", row.take);
-        let (stands, height) = (import::standing_height(&clip), body_height(&clip));
+        let (stands, height) = (import::standing_height(&clip), retarget::body_height(&clip).unwrap());
         println!("{}: {height:.2} m tall by the bones, {stands:.2} m in the tallest posture", row.take);
         assert!((1.5..2.0).contains(&height), "{}: {height} m", row.take);
         let motion = retarget::to_canonical(&clip).unwrap();
         assert!(motion.rotations.iter().all(|q| q.is_normalized()), "{}", row.take);
     }
-}
-
-/// Height of the body: its bones from sole to crown, one after another, whatever the posture.
-fn body_height(clip: &Clip) -> f32 {
-    use joint::*;
-    let rest = retarget::RestRig::of(&clip.skeleton);
-    let found = retarget::match_rig(&rest).unwrap().joints;
-    let way: Vec<usize> = [LEFT_FOOT, LEFT_LEG, LEFT_UP_LEG, SPINE, SPINE1, SPINE2, NECK, HEAD]
-        .iter()
-        .filter_map(|&slot| found[slot])
-        .collect();
-    let bones: f32 = way
-        .windows(2)
-        .map(|w| {
-            if w[0] == found[LEFT_UP_LEG].unwrap() {
-                // From the hip joint up: only what the spine's foot is higher counts.
-                (rest.places[w[1]].y - rest.places[w[0]].y).abs()
-            } else {
-                rest.places[w[0]].distance(rest.places[w[1]])
-            }
-        })
-        .sum();
-    // Ankles are 0.07 m above the ground; heads without a tip reach 0.2 m above their joint.
-    let crown = clip.skeleton.joints[found[HEAD].unwrap()].tip.map_or(0.2, |tip| tip.length().max(0.15));
-    0.07 + bones + crown
 }
 
 #[test]

@@ -7,13 +7,14 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from math import sin
 from pathlib import Path
 from statistics import median
 
 from rich.table import Table
 
-from crowdquilt import check, motion, patch, samples
+from crowdquilt import check, motion, patch, refine, samples
 from crowdquilt._core import PatchSet, Scene, tile
 
 PAPER = "Hyun et al. 2013, figure 7: Static, 907 patches, 2.93 GHz Core i7"
@@ -87,21 +88,36 @@ def captures(seeds: int, say: Say) -> list[Row]:
         samples.write(Path(folder), 1)
         bvh = long_bvh(Path(folder) / "walk-normal-a.bvh", Path(folder) / "long.bvh")
         amc = long_amc(Path(folder) / "long.amc")
-        ours = {path: rate(lambda path=path: len_of(motion.load(path)), seeds) for path in (bvh, amc)}
+        ours = {path: rate(partial(frames_of, path), seeds) for path in (bvh, amc)}
         say(f"motion: BVH {ours[bvh]:.0f} and AMC {ours[amc]:.0f} frames/s")
         rows = [row("motion", "AMC import", ours[amc], "frames/s")]
         for name, read in public_readers().items():
-            theirs = rate(lambda read=read: read(bvh), 1)
+            theirs = rate(partial(read, bvh), 1)
             say(f"motion: {name} {theirs:.0f} frames/s")
             rows.append(
                 row("motion", f"BVH import beside {name}", ours[bvh], "frames/s", theirs, f"{name}, here and now")
             )
-    return [row("motion", "BVH import", ours[bvh], "frames/s"), *rows]
+        patches = patch.cut(Path(folder))
+    return [row("motion", "BVH import", ours[bvh], "frames/s"), *rows, refinement(patches, seeds, say)]
 
 
-def len_of(clip: motion.Clip) -> int:
-    """Frames of a clip."""
-    return clip.frames
+def refinement(patches: PatchSet, runs: int, say: Say) -> Row:
+    """Character-frames of full bodies made per second, from the fragments of a crowd."""
+    crowd = tile(Scene.demo().replace(characters=30, interaction=0.1), patches, seed=1).crowd
+    frames = sum(len(crowd.roots(person)) for person in range(len(crowd)))
+
+    def again() -> int:
+        refine.refine_crowd(crowd)
+        return frames
+
+    found = rate(again, runs)
+    say(f"motion: refinement {found:.0f} character-frames/s")
+    return row("motion", "refinement of full bodies", found, "character-frames/s")
+
+
+def frames_of(path: Path) -> int:
+    """Imports a capture; the number of its frames."""
+    return motion.load(path).frames
 
 
 def rate(read: Callable[[], int], runs: int) -> float:

@@ -135,10 +135,11 @@ impl Clip {
         rotations(py, &self.clip.rotations, self.clip.skeleton.joints.len())
     }
 
-    /// Height of the person, metres: from the lowest to the highest joint or bone tip when standing.
+    /// Height of the person, metres: by the bones from sole to crown, whatever the posture; where the rig is not told,
+    /// from the lowest to the highest joint or bone tip when standing.
     #[getter]
     fn height_m(&self) -> f32 {
-        import::standing_height(&self.clip)
+        retarget::body_height(&self.clip).unwrap_or_else(|_| import::standing_height(&self.clip))
     }
 
     /// (frames, joints, 3): positions of all joints in the world, metres.

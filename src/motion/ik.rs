@@ -16,7 +16,7 @@ const POLE_PULL: f32 = 0.04;
 /// (`upper_new = swing * upper`, `lower_new = swing * bend * lower`), and the end's new position.
 pub fn two_bone(hip: Vec3, knee: Vec3, end: Vec3, target: Vec3, pole: Vec3, stretch: f32) -> (Quat, Quat, Vec3) {
     let (upper, lower) = ((knee - hip).length(), (end - knee).length());
-    let reach = (target - hip).length().clamp((upper - lower).abs() + 1e-4, (upper + lower) * stretch);
+    let reach = (target - hip).length().max((upper - lower).abs() + 1e-4).min((upper + lower) * stretch);
     let along = (end - hip).normalize_or(Vec3::NEG_Y);
     let toward = (target - hip).normalize_or(along);
     let bulge = (knee - hip).reject_from_normalized(along) + pole.reject_from_normalized(along) * POLE_PULL;

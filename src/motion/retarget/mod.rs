@@ -13,6 +13,7 @@ mod families;
 mod feet;
 mod floor;
 mod guess;
+mod height;
 mod names;
 mod rest;
 mod rig;
@@ -23,6 +24,7 @@ pub mod rigfile;
 mod tests;
 
 pub(crate) use floor::lowest;
+pub use height::body_height;
 pub use names::{RigMatch, match_rig};
 pub use rest::RestRig;
 pub use rig::rest_turns;
@@ -60,7 +62,9 @@ pub fn take(clips: &[Clip]) -> Result<Vec<Motion>> {
             let problem = format!("expected at least 2 frames, found {}", clip.frames());
             return Err(Error::invalid(clip.name.clone(), "frames", problem));
         }
+        check_legs(clip, rig)?;
         let mut canonical_clip = onto_canonical(clip, rig, Vec3::new(ground_scale, ratio, ground_scale));
+        check_places(&canonical_clip)?;
         floor::settle(&mut canonical_clip, rig.joints[LEFT_TOE].is_none());
         let mut motion = build::motion(&canonical_clip);
         motion.plants = plants::detect(&motion, &PlantOptions::default());
@@ -68,6 +72,26 @@ pub fn take(clips: &[Clip]) -> Result<Vec<Motion>> {
         Ok(motion)
     };
     clips.iter().zip(&rigs).zip(&ratios).map(person).collect()
+}
+
+/// Legs and ways beyond these are no person's, and sums of them no numbers, metres.
+const LEGS: std::ops::Range<f32> = 0.01..100.0;
+const FARTHEST: f32 = 1e6;
+
+fn check_legs(clip: &Clip, rig: &Rig) -> Result<()> {
+    if LEGS.contains(&rig.leg) {
+        return Ok(());
+    }
+    let problem = format!("expected legs of {} to {} m, found {} m", LEGS.start, LEGS.end, rig.leg);
+    Err(Error::invalid(clip.name.clone(), "skeleton", problem))
+}
+
+fn check_places(clip: &Clip) -> Result<()> {
+    let lost = clip.root.iter().position(|p| !p.is_finite() || p.abs().max_element() > FARTHEST);
+    lost.map_or(Ok(()), |frame| {
+        let problem = format!("expected hips within {FARTHEST} m of the origin, found {}", clip.root[frame]);
+        Err(Error::invalid(clip.name.clone(), format!("frame {frame}"), problem))
+    })
 }
 
 /// The clip with the same frames on the canonical skeleton; lengths of the root's path times `scale`.

@@ -105,3 +105,26 @@ fn resampling_keeps_times() {
     assert_eq!(motion.len(), 20);
     assert!((motion.path.points[10] - glam::Vec2::new(slow.root[20].x, slow.root[20].z)).length() < 1e-3);
 }
+
+#[test]
+fn absurd_sizes_are_named() {
+    let says = |clip: Clip, text: &str| {
+        let found = to_canonical(&clip).unwrap_err().to_string();
+        assert!(found.contains(text), "{found}");
+    };
+    let mut far = lively();
+    far.root[7].x = 1e30;
+    says(far, "frame 7: expected hips within");
+    let mut lost = lively();
+    lost.root[3].y = f32::NAN;
+    says(lost, "frame 3: expected hips within");
+    let mut dwarf = lively();
+    dwarf.skeleton.joints.iter_mut().for_each(|j| j.offset *= 1e-6);
+    says(dwarf, "expected legs of 0.01 to 100 m");
+    // A place that only bones lead to.
+    let mut wide = lively();
+    for hip in [LEFT_UP_LEG, RIGHT_UP_LEG] {
+        wide.skeleton.joints[hip].offset = Vec3::splat(3e37);
+    }
+    assert!(to_canonical(&wide).is_err());
+}
