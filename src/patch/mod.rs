@@ -4,6 +4,7 @@ pub mod boundary;
 mod cut;
 #[cfg(test)]
 mod cut_tests;
+pub mod episode;
 mod file;
 mod mirror;
 pub mod propose;
