@@ -124,7 +124,9 @@ impl Proportions {
         let around = |along: f32, x: f32, z: f32| Vec3::new(x, along, z);
         let (limbs, hand) = (self.limbs, 0.5 + 0.5 * self.arms);
         let scale = match joint {
-            HIPS => around(1.0, self.hips * (0.4 + 0.3 * self.waist + 0.3 * limbs), 0.3 + 0.4 * self.waist + 0.3 * limbs),
+            HIPS => {
+                around(1.0, self.hips * (0.4 + 0.3 * self.waist + 0.3 * limbs), 0.3 + 0.4 * self.waist + 0.3 * limbs)
+            }
             SPINE => around(self.torso, 0.3 + 0.7 * self.waist, self.waist),
             SPINE1 => around(self.torso, 0.5 * (self.waist + self.chest), 0.6 * self.waist + 0.4 * self.chest),
             SPINE2 => around(self.torso, 0.5 * (self.shoulders + self.chest), self.chest),

@@ -17,7 +17,7 @@ const REACH: f32 = 2.4;
 /// Gaps are not told apart beyond this, metres.
 const FAR: f32 = 0.3;
 /// What slides along another faster than this does not hold it, m/s.
-const SLIDES: f32 = 0.5;
+const SLIDES: f32 = 0.35;
 /// Frames for which a contact may be lost without ending.
 const BRIDGED: usize = 2;
 const REGIONS: usize = Region::ALL.len();
@@ -76,18 +76,25 @@ fn runs(signal: &[(usize, f32)], lower: f32, upper: f32) -> Vec<(usize, usize)> 
     found
 }
 
-/// The longest stretch of a run over which the regions are as near each other as they get, up to `slack`, and do not
-/// slide; where they always slide, as in a slap, the slowest frames count.
+/// The longest stretch of a run over which the regions are as near each other as they are for half of it, up to `slack`
+/// (not as near as they ever are: grips of captures give by centimetres), and do not slide; where they always slide, as
+/// in a slap, the slowest frames count.
 fn settled(bodies: [&Body; 2], regions: [Region; 2], run: &[(usize, f32)], slack: f32) -> (usize, usize) {
     let least = |values: &mut dyn Iterator<Item = f32>| values.fold(f32::INFINITY, f32::min);
     let apart: Vec<f32> = run.iter().map(|&(f, gap)| apart(bodies, regions, f, gap)).collect();
-    let near = least(&mut apart.iter().copied()) + slack;
+    let near = median(&apart) + slack;
     let slides: Vec<f32> = run.iter().map(|&(f, _)| sliding(bodies, regions, f)).collect();
     let while_near = &mut slides.iter().zip(&apart).filter(|s| *s.1 <= near).map(|s| *s.0);
     let slow = (1.5 * least(while_near)).max(SLIDES);
     let holds: Vec<bool> = apart.iter().zip(&slides).map(|(&gap, &slide)| gap <= near && slide <= slow).collect();
     let (first, last) = longest(&holds);
     (run[first].0, run[last].0)
+}
+
+fn median(values: &[f32]) -> f32 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f32::total_cmp);
+    sorted[(sorted.len() - 1) / 2]
 }
 
 /// First and last index of the longest stretch that holds, up to pauses of [`BRIDGED`].
@@ -103,18 +110,21 @@ fn longest(holds: &[bool]) -> (usize, usize) {
     stretches.into_iter().rev().max_by_key(|s| s.1 - s.0).unwrap_or((0, holds.len() - 1))
 }
 
-/// How fast two regions move past each other at a frame, m/s; 0 for limbs, which are long.
+/// How fast two regions move past each other at a frame, m/s, before or after it, whichever is slower: a contact begins
+/// with the frame after which nothing slides. 0 for limbs, which are long.
 fn sliding(bodies: [&Body; 2], regions: [Region; 2], frame: usize) -> f32 {
     let last = bodies[0].len().min(bodies[1].len()) - 1;
-    let (before, after) = (frame.saturating_sub(1), (frame + 1).min(last));
-    let way = |side: usize| {
-        let at = |f: usize| middle(bodies[side], regions[side], f);
-        Some(at(after)? - at(before)?)
+    let between = |f: usize| {
+        let [a, b] = [0, 1].map(|side| middle(bodies[side], regions[side], f));
+        Some(b? - a?)
     };
-    match (way(0), way(1)) {
-        (Some(a), Some(b)) => a.distance(b) * FPS / (after - before).max(1) as f32,
+    let speed = |from: usize, to: usize| match (between(from), between(to)) {
+        _ if from == to => f32::INFINITY,
+        (Some(p), Some(q)) => p.distance(q) * FPS,
         _ => 0.0,
-    }
+    };
+    let slower = speed(frame.saturating_sub(1), frame).min(speed(frame, (frame + 1).min(last)));
+    if slower.is_finite() { slower } else { 0.0 }
 }
 
 /// A point that moves with a region.

@@ -51,8 +51,7 @@ fn detect_one(bodies: &[Body], thresholds: Thresholds, options: &EpisodeOptions)
     let (mut signs, mut pairs) = (Vec::new(), Vec::new());
     for a in 0..bodies.len() {
         for b in a + 1..bodies.len() {
-            let couple =
-                Couple { people: [a, b], bodies: [&bodies[a], &bodies[b]], thresholds: &thresholds, options };
+            let couple = Couple { people: [a, b], bodies: [&bodies[a], &bodies[b]], thresholds: &thresholds, options };
             let mut own = contact::signs(couple.people, couple.bodies, options);
             own.extend(couple.proximity());
             own.extend(couple.synchronous());
