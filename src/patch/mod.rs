@@ -1,5 +1,6 @@
 //! Motion patches: fragments of one or more people's motion with ports, contacts and labels, and the set of them.
 
+pub mod boundaries;
 pub mod boundary;
 mod cut;
 #[cfg(test)]
