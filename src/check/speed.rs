@@ -13,7 +13,7 @@ use crate::stage::{Character, Crowd};
 const SLOWEST_TURN: f32 = 0.5;
 
 /// A joint that the captures hardly accelerate is allowed this much, m/s^2: the floor that noise has in any capture.
-const LOWEST_ACCELERATION: f32 = 10.0;
+const LOWEST_ACCELERATION: f32 = 20.0;
 
 /// Fastest turn (rad/s), fastest move (m/s) and largest acceleration (m/s^2) of every joint; turns are local, the hips'
 /// global.
