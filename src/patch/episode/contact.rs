@@ -88,9 +88,10 @@ fn settled(bodies: [&Body; 2], regions: [Region; 2], run: &[(usize, f32)], slack
     let slow = (1.5 * least(while_near)).max(SLIDES);
     let holds: Vec<bool> = apart.iter().zip(&slides).map(|(&gap, &slide)| gap <= near && slide <= slow).collect();
     let (mut first, mut last) = longest(&holds);
-    // Hands that clap together slide a moment longer: the nearest moment belongs to the contact.
+    // Hands that clap together, much nearer than they then hold, slide a moment longer: that belongs to the contact.
     let nearest = (0..run.len()).min_by(|&i, &j| apart[i].total_cmp(&apart[j])).unwrap_or(first);
-    if nearest + BRIDGED + 1 >= first && nearest <= last + BRIDGED + 1 {
+    let claps = apart[nearest] + slack < median(&apart);
+    if claps && nearest + BRIDGED + 1 >= first && nearest <= last + BRIDGED + 1 {
         (first, last) = (first.min(nearest), last.max(nearest));
     }
     (run[first].0, run[last].0)

@@ -87,6 +87,7 @@ fn score(samples: &[Sample]) -> Score {
             score.handovers += usize::from(t.handover);
             for s in of.iter().filter(|_| !t.handover) {
                 let off = [s.begin as f32 / FPS - t.begin, s.end as f32 / FPS - t.end].map(f32::abs);
+                println!("{} {off:.3?} s off", sample.file.name);
                 score.worst = score.worst.max(off[0]).max(off[1]);
             }
         }
