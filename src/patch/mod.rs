@@ -1,9 +1,11 @@
 //! Motion patches: fragments of one or more people's motion with ports, contacts and labels, and the set of them.
 
+pub mod boundaries;
 pub mod boundary;
 mod cut;
 #[cfg(test)]
 mod cut_tests;
+pub mod episode;
 mod file;
 mod mirror;
 pub mod propose;
