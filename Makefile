@@ -127,7 +127,7 @@ fuzz:
 	for target in $(FUZZ_TARGETS); do \
 		echo "== fuzz $$target for $(FUZZ_SECS) s"; \
 		cargo +nightly fuzz run $$target -- -max_total_time=$(FUZZ_SECS) -timeout=10 -rss_limit_mb=2048 \
-			-max_len=65536 -verbosity=0 -print_final_stats=1; \
+			-max_len=65536 -seed=1 -verbosity=0 -print_final_stats=1; \
 	done
 
 lint: setup $(NODE_MODULES)

@@ -254,6 +254,10 @@ fn bad_characters_are_told_by_name() {
 fn cut_files_are_refused_without_panic() {
     let (json, binary) = character(&CENTIMETRES);
     let whole = glb_file::write(&json, &binary);
+    // A header that claims less than its own size.
+    let mut lying = whole[..478].to_vec();
+    lying[8..12].copy_from_slice(&3u32.to_le_bytes());
+    assert!(Avatar::open(&lying).is_err());
     for length in (0..whole.len()).step_by(1 + whole.len() / 200) {
         assert!(Avatar::open(&whole[..length]).is_err(), "{length} of {}", whole.len());
     }

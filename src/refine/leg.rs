@@ -113,8 +113,10 @@ mod tests {
     use super::*;
     use crate::motion::joint::LEFT_FOOT;
 
+    type Globals = Vec<(Vec3, Quat)>;
+
     /// A person at rest with the left foot to be moved by `shift`: what is missed, and the joints after.
-    fn planted(shift: Vec3) -> (f32, Vec<(Vec3, Quat)>, Vec<(Vec3, Quat)>) {
+    fn planted(shift: Vec3) -> (f32, Globals, Globals) {
         let mut pose = [Quat::IDENTITY; JOINT_COUNT];
         let root = canonical().joints[0].offset;
         let (mut before, mut after) = (Vec::new(), Vec::new());

@@ -6,6 +6,7 @@ use gltf_json::{Node, Root};
 use super::bad;
 use crate::Result;
 use crate::export::actor::Bone;
+use crate::motion::gltf::chunks;
 
 /// Scales that differ by less than this part count as even.
 const EVEN: f32 = 2e-3;
@@ -15,9 +16,12 @@ pub(super) fn open(bytes: &[u8]) -> Result<(Root, Vec<u8>)> {
     if !bytes.starts_with(b"glTF") {
         return Err(bad("byte 0", "expected a binary glTF file (.glb), found something else"));
     }
-    let file = gltf::Gltf::from_slice(bytes).map_err(|e| bad("glTF", e.to_string()))?;
-    let data = file.blob.unwrap_or_default();
-    let json = file.document.into_json();
+    let (json, data) = chunks(bytes)?;
+    let place = |e: &serde_json::Error| format!("JSON line {} column {}", e.line(), e.column());
+    let json: Root = serde_json::from_slice(json).map_err(|e| bad(place(&e), e.to_string()))?;
+    // The crate's own reader of the container panics on some broken ones; of its document all references are checked.
+    let json = gltf::Document::from_json(json).map_err(|e| bad("glTF", e.to_string()))?.into_json();
+    let data = data.unwrap_or_default().to_vec();
     if !json.extensions_required.is_empty() {
         let names = json.extensions_required.join(", ");
         return Err(bad("extensionsRequired", format!("expected plain glTF 2.0, found {names}; export without")));

@@ -55,8 +55,11 @@ fn word(bytes: &[u8], at: usize) -> Option<usize> {
     Some(u32::from_le_bytes(word.try_into().ok()?) as usize)
 }
 
-/// The chunks of a GLB (glTF 2.0, section 4).
-fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
+/// The chunks of a GLB (glTF 2.0, section 4): JSON, and binary where there is some.
+///
+/// # Errors
+/// The container is not version 2, or ends early.
+pub(crate) fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
     let version = word(bytes, 4).unwrap_or(0);
     if version != 2 {
         return Err(bad("byte 4", format!("expected version 2 of the container, found {version}")));

@@ -7,4 +7,5 @@ mod scene;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use container::chunks;
 pub(crate) use scene::{Source, read};

@@ -44,8 +44,8 @@ fn every_family_is_known_by_its_names() {
         let found = match_rig(&renamed(&names)).unwrap();
         let rig = renamed(&names);
         assert_eq!(found.family, family.name);
-        for slot in 0..JOINT_COUNT {
-            assert_eq!(found.joints[slot].map(|j| &rig.names[j]), names[slot].as_ref(), "{} {slot}", family.name);
+        for (slot, name) in names.iter().enumerate() {
+            assert_eq!(found.joints[slot].map(|j| &rig.names[j]), name.as_ref(), "{} {slot}", family.name);
         }
     }
 }
@@ -317,7 +317,9 @@ fn twist_bones_are_passed_over_and_long_spines_thinned() {
 #[test]
 fn turns_carry_bones_onto_the_canonical_ones() {
     let names = FAMILIES[3].joints();
-    for (facing, arms) in [(0.0, 0.0), (0.0, 0.8), (std::f32::consts::FRAC_PI_2, 0.0), (3.14, 1.4), (0.9, 0.5)] {
+    for (facing, arms) in
+        [(0.0, 0.0), (0.0, 0.8), (std::f32::consts::FRAC_PI_2, 0.0), (std::f32::consts::PI, 1.4), (0.9, 0.5)]
+    {
         let mut rig = renamed(&names);
         let stand = Quat::from_rotation_y(facing);
         for side in [1.0, -1.0] {

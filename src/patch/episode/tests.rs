@@ -213,7 +213,7 @@ fn nothing_is_explained() {
     let away = |m: &Motion, metres: f32| placed(std::slice::from_ref(m), Ground::new(Vec2::new(metres, 0.0), 0.0));
     let (stand, walk) = (standing(2.0), walking(2.0));
     assert_eq!(why(&[]), "no event: expected people, found none");
-    assert_eq!(why(&[stand.clone()]), "no event: expected at least two people, found one (61 frames)");
+    assert_eq!(why(std::slice::from_ref(&stand)), "no event: expected at least two people, found one (61 frames)");
     let one = standing(0.0);
     let alone = why(&[one.clone(), away(&one, 1.0).remove(0)]);
     assert!(alone.contains("expected at least two frames, found 1"), "{alone}");
