@@ -246,6 +246,8 @@ fn bad_characters_are_told_by_name() {
     assert!(elsewhere.contains("buffer 0") && elsewhere.contains("one .glb"), "{elsewhere}");
     let beyond = told(&|json| json["accessors"][0]["count"] = 9_999_999.into());
     assert!(beyond.contains("accessor 0"), "{beyond}");
+    let lost = told(&|json| json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 999.into());
+    assert!(lost.contains("mesh 0") && lost.contains("found 999"), "{lost}");
     let bvh = Avatar::open(b"HIERARCHY").unwrap_err().to_string();
     assert!(bvh.contains(".glb"), "{bvh}");
 }

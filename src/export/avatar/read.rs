@@ -19,6 +19,7 @@ pub(super) fn open(bytes: &[u8]) -> Result<(Root, Vec<u8>)> {
     let (json, data) = chunks(bytes)?;
     let place = |e: &serde_json::Error| format!("JSON line {} column {}", e.line(), e.column());
     let json: Root = serde_json::from_slice(json).map_err(|e| bad(place(&e), e.to_string()))?;
+    attributes(&json)?;
     // The crate's own reader of the container panics on some broken ones; of its document all references are checked.
     let json = gltf::Document::from_json(json).map_err(|e| bad("glTF", e.to_string()))?.into_json();
     let data = data.unwrap_or_default().to_vec();
@@ -40,6 +41,19 @@ pub(super) fn open(bytes: &[u8]) -> Result<(Root, Vec<u8>)> {
     }
     ranges(&json, data.len())?;
     Ok((json, data))
+}
+
+/// Every attribute of a mesh is there; of a missing one the crate's check of references panics.
+fn attributes(json: &Root) -> Result<()> {
+    for (m, mesh) in json.meshes.iter().enumerate() {
+        for accessor in mesh.primitives.iter().flat_map(|p| p.attributes.values()) {
+            if accessor.value() >= json.accessors.len() {
+                let problem = format!("expected one of {} accessors, found {accessor}", json.accessors.len());
+                return Err(bad(format!("mesh {m}"), problem));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Every view lies in the data, every accessor in its view.
