@@ -248,6 +248,9 @@ fn bad_characters_are_told_by_name() {
     assert!(beyond.contains("accessor 0"), "{beyond}");
     let lost = told(&|json| json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 999.into());
     assert!(lost.contains("mesh 0") && lost.contains("found 999"), "{lost}");
+    let joints = character(&CENTIMETRES).0["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"].as_u64().unwrap();
+    let floats = told(&|json| json["accessors"][joints as usize]["componentType"] = 5126.into());
+    assert!(floats.contains("mesh 0") && floats.contains("fit for"), "{floats}");
     let bvh = Avatar::open(b"HIERARCHY").unwrap_err().to_string();
     assert!(bvh.contains(".glb"), "{bvh}");
 }

@@ -1,6 +1,9 @@
 //! Reading a character's file: what is there, and whether it can be used.
 
 use glam::{Affine3A, Mat4, Quat, Vec3};
+use gltf_json::accessor::{ComponentType, Type};
+use gltf_json::mesh::Semantic;
+use gltf_json::validation::Checked::Valid;
 use gltf_json::{Node, Root};
 
 use super::bad;
@@ -43,13 +46,26 @@ pub(super) fn open(bytes: &[u8]) -> Result<(Root, Vec<u8>)> {
     Ok((json, data))
 }
 
-/// Every attribute of a mesh is there; of a missing one the crate's check of references panics.
+/// Every attribute of a mesh is there and holds the numbers that it may: of others the crate panics.
 fn attributes(json: &Root) -> Result<()> {
+    use ComponentType::{F32, U8, U16};
+    use Semantic::{Joints, Positions, Weights};
     for (m, mesh) in json.meshes.iter().enumerate() {
-        for accessor in mesh.primitives.iter().flat_map(|p| p.attributes.values()) {
-            if accessor.value() >= json.accessors.len() {
-                let problem = format!("expected one of {} accessors, found {accessor}", json.accessors.len());
+        for (semantic, index) in mesh.primitives.iter().flat_map(|p| &p.attributes) {
+            let Some(accessor) = json.accessors.get(index.value()) else {
+                let problem = format!("expected one of {} accessors, found {index}", json.accessors.len());
                 return Err(bad(format!("mesh {m}"), problem));
+            };
+            let (Valid(component), Valid(kind)) = (accessor.component_type, accessor.type_) else { continue };
+            let sound = match semantic {
+                Valid(Positions) => component.0 == F32 && kind == Type::Vec3,
+                Valid(Joints(_)) => matches!(component.0, U8 | U16) && kind == Type::Vec4,
+                Valid(Weights(_)) => matches!(component.0, F32 | U8 | U16) && kind == Type::Vec4,
+                _ => true,
+            };
+            if !sound {
+                let problem = format!("expected numbers fit for {semantic:?}, found {:?} {kind:?}", component.0);
+                return Err(bad(format!("mesh {m}, accessor {index}"), problem));
             }
         }
     }
