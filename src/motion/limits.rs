@@ -2,8 +2,8 @@
 //!
 //! Every joint's local rotation is split into a twist about its bone and a swing of the bone (`rotation = swing *
 //! twist`). Knees and elbows are hinges: they bend one way, by so much, and hardly go past straight. The others swing
-//! within an ellipse of four half axes. The ranges are those of clinical goniometry (AAOS) with generous room on top:
-//! captures measure joints of skin and cloth, and one canonical body stands for all.
+//! within an ellipse of four half axes. The ranges begin at clinical goniometry (AAOS) and are widened until real
+//! captures, which measure joints of skin and cloth, rarely leave them: they catch flips, and are no anatomy.
 
 use std::f32::consts::PI;
 
