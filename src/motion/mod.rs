@@ -8,7 +8,7 @@ mod clip;
 pub mod contacts;
 mod fbx;
 pub mod gait;
-pub(crate) mod gltf;
+mod gltf;
 pub mod ik;
 pub mod import;
 pub mod limits;
