@@ -277,9 +277,14 @@ fn references_that_lead_nowhere_are_named() {
 #[test]
 fn numbers_of_the_wrong_kind_are_named() {
     refused_of("JOINTS_0", "componentType", json!(5126), "expected [Vec4] of whole numbers of at most 2 bytes");
-    refused_of("JOINTS_0", "normalized", json!(true), "expected [Vec4] of whole numbers of at most 2 bytes");
-    refused_of("POSITION", "type", json!("VEC2"), "expected [Vec3] of floats");
-    refused_of("POSITION", "componentType", json!(7), "expected [Vec3] of floats");
+    refused_of("JOINTS_0", "normalized", json!(true), "at most 2 bytes, found Vec4 of normalised U8");
+    refused_of("POSITION", "type", json!("VEC2"), "expected [Vec3] of floats, found Vec2 of F32");
+    refused_of(
+        "POSITION",
+        "componentType",
+        json!(7),
+        "expected [Vec3] of floats, found a type that glTF does not know",
+    );
     refused_of("TEXCOORD_0", "normalized", json!(false), "expected [Vec2] of floats or normalised integers");
     refused_of("NORMAL", "count", json!(3), "vertices, found 3");
     refused_of("POSITION", "count", json!(0), "found 0");
@@ -458,4 +463,43 @@ fn few_bytes_cannot_ask_for_much_memory() {
     file.json["meshes"][0]["primitives"] = pieces.collect();
     let error = Avatar::open(&file.bytes()).unwrap_err().to_string();
     assert!(error.contains("expected accessors of no more data than the file's"), "{error}");
+}
+
+/// Pointers to everything in a JSON value.
+fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
+    found.push(at.to_owned());
+    match value {
+        Value::Array(list) => list.iter().enumerate().for_each(|(i, v)| pointers(v, &format!("{at}/{i}"), found)),
+        Value::Object(map) => map.iter().for_each(|(k, v)| pointers(v, &format!("{at}/{k}"), found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn any_one_change_is_refused_or_harmless() {
+    let file = dressed();
+    let mut all = Vec::new();
+    pointers(&file.json, "", &mut all);
+    let crowd = fixture::lattice(1, 2);
+    let others = [json!(null), json!(0), json!(3), json!(-1), json!(4_000_000_000u64), json!(1e300), json!("MASK")];
+    let others = [others.as_slice(), &[json!([]), json!({}), json!([0.5, 1.0]), json!(5121), json!(true)]].concat();
+    let (mut refused, mut played) = (0, 0);
+    for (i, pointer) in all.iter().enumerate() {
+        // One way for each place; over all places every way is taken many times.
+        let mut changed = File { json: file.json.clone(), binary: file.binary.clone() };
+        *changed.json.pointer_mut(pointer).unwrap() = others[i % others.len()].clone();
+        match Avatar::open(&glb_file::write(&changed.json, &changed.binary)) {
+            Err(error) => {
+                let told = error.to_string();
+                assert!(told.contains("expected") || told.contains("missing field"), "{pointer}: {told}");
+                refused += 1;
+            }
+            Ok(avatar) => {
+                let Glb { json, .. } = Glb::open(&glb_with(&crowd, &[avatar]));
+                assert!(json["meshes"][0]["primitives"][0]["attributes"]["POSITION"].is_u64());
+                played += 1;
+            }
+        }
+    }
+    assert!(refused > 100 && played > 100, "{refused} refused, {played} played");
 }

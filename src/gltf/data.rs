@@ -133,13 +133,17 @@ impl<'a> Data<'a> {
         let accessor = find(self.accessors, index, "accessors", place)?;
         let place = format!("{place}, accessor {index}");
         let fits = |kind, component| kinds.contains(&kind) && numbers.allow(component, accessor.normalized);
-        match (accessor.type_, accessor.component_type) {
-            (Checked::Valid(kind), Checked::Valid(component)) if fits(kind, component.0) => Ok((accessor, place)),
-            (kind, component) => {
-                let found = format!("{kind:?} of {component:?}, normalised: {}", accessor.normalized);
-                Err(bad(place, format!("expected {kinds:?} of {numbers}, found {found}")))
+        let found = match (accessor.type_, accessor.component_type) {
+            (Checked::Valid(kind), Checked::Valid(component)) if fits(kind, component.0) => {
+                return Ok((accessor, place));
             }
-        }
+            (Checked::Valid(kind), Checked::Valid(component)) if accessor.normalized => {
+                format!("{kind:?} of normalised {:?}", component.0)
+            }
+            (Checked::Valid(kind), Checked::Valid(component)) => format!("{kind:?} of {:?}", component.0),
+            _ => "a type that glTF does not know".into(),
+        };
+        Err(bad(place, format!("expected {kinds:?} of {numbers}, found {found}")))
     }
 
     /// The elements of an accessor whose types are known to be valid.
