@@ -1,4 +1,7 @@
 //! Our mannequin, disguised as a character from elsewhere.
+#![allow(dead_code)]
+
+pub mod dressed;
 
 use crowdquilt::export::{Avatar, glb};
 use crowdquilt::motion::{Build, JOINT_COUNT, canonical, joint};
@@ -100,7 +103,6 @@ pub fn character(disguise: &Disguise) -> (Value, Vec<u8>) {
 }
 
 /// The character, read.
-#[allow(dead_code)]
 pub fn avatar(disguise: &Disguise) -> Avatar {
     let (json, binary) = character(disguise);
     Avatar::open(&glb_file::write(&json, &binary)).unwrap()

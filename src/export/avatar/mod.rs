@@ -3,8 +3,8 @@
 //! The joints are told by [`match_rig`], the rest pose may be a T-pose, an A-pose or anything upright, of any size and
 //! facing anywhere. Meshes, skins, materials and pictures come along; the character's own animations do not.
 //!
-//! The file's nodes are looked at first ([`nodes`]), then everything that is seen ([`outfit`]): it is checked and kept
-//! in the form in which it is written ([`graft`]).
+//! The file's nodes are looked at first ([`nodes`]), then everything that is seen is followed from them
+//! ([`tailor`]): it is checked and kept in the form ([`outfit`]) in which it is written ([`graft`]).
 
 mod graft;
 mod material;
@@ -13,6 +13,7 @@ mod outfit;
 mod picture;
 mod play;
 mod sole;
+mod tailor;
 mod vertices;
 
 use std::path::Path;
@@ -94,7 +95,7 @@ impl Avatar {
         let turns = rest_turns(&rig, &found);
         let plays = found.joints.map(|joint| joint.map(|j| j + 1));
         let tables = Tables { accessors: &json.accessors, views: &json.buffer_views, buffers: &json.buffers };
-        let outfit = Outfit::read(&json, Data::new(tables, binary, bytes.len(), None), &parts)?;
+        let outfit = tailor::dress(&json, Data::new(tables, binary, bytes.len(), None), &parts)?;
         let mut avatar = Self { outfit, bones, rest, plays, turns, leg: 0.0, ankle: 0.0 };
         avatar.measure()?;
         Ok(avatar)
