@@ -9,7 +9,7 @@ pub mod collection;
 pub mod contacts;
 mod fbx;
 pub mod gait;
-pub(crate) mod gltf;
+mod gltf;
 pub mod ik;
 pub mod import;
 pub mod limits;
