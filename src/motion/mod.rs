@@ -5,6 +5,7 @@ mod body;
 mod build;
 pub mod bvh;
 mod clip;
+pub mod collection;
 pub mod contacts;
 mod fbx;
 pub mod gait;
