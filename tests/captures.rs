@@ -212,6 +212,13 @@ fn farther(was: [&Hands; 2], is: [&Hands; 2]) -> Vec<f32> {
     found
 }
 
+/// The acceleration that palms stay below for 99 of 100 frames, m/s2.
+fn jolt(motions: &[Motion]) -> f32 {
+    let palms = motions.iter().flat_map(|m| HANDS.map(|hand| contacts::palm_trajectory(m, hand)));
+    let of = |p: Vec<Vec3>| p.windows(3).map(|p| (p[2] - 2.0 * p[1] + p[0]).length() * 900.0).collect::<Vec<f32>>();
+    percentile(palms.flat_map(of).collect(), 99)
+}
+
 /// Hands that touch in captures of pairs are within 2 cm of as near each other on bodies of another size.
 #[test]
 fn hands_of_pairs_are_as_near_each_other_as_captured() {
@@ -223,14 +230,18 @@ fn hands_of_pairs_are_as_near_each_other_as_captured() {
             let was = clips.each_ref().map(captured_hands);
             let of = |motions: &[Motion]| farther([&was[0], &was[1]], [&hands(&motions[0]), &hands(&motions[1])]);
             // Alone, nobody minds the other's hands.
-            let before = of(&clips.each_ref().map(|clip| retarget::to_canonical(clip).unwrap()));
-            let after = of(&retarget::take(&clips).unwrap());
+            let alone = clips.each_ref().map(|clip| retarget::to_canonical(clip).unwrap());
+            let moved = retarget::take(&clips).unwrap();
+            let (before, after) = (of(&alone), of(&moved));
             let most = |off: &[f32]| percentile(off.to_vec(), 100);
             let (frames, before, after) = (after.len(), most(&before), most(&after));
             println!(
                 "{one}{take}: {frames} frames, hands farther apart by up to {before:.3} m; restored: {after:.3} m"
             );
             assert!(frames >= 20 && after < 0.02, "{one}{take}: {after}");
+            let (rough, smooth) = (jolt(&moved), jolt(&alone));
+            println!("{one}{take}: hands accelerate by {rough:.1} m/s2, alone {smooth:.1}");
+            assert!(rough < 1.15 * smooth + 5.0, "{one}{take}: {rough} instead of {smooth} m/s2");
         }
     }
 }

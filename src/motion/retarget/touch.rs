@@ -2,8 +2,8 @@
 //! apart; so where hands of two people touch on the bones that were captured, arms are bent until palms and hands are
 //! as near each other as they were. Before and after that the correction fades.
 //!
-//! Nobody is pushed apart: captured arms are often too short (CMU's end some centimetres before the wrist), and hands
-//! that were holding each other are then nearer on the canonical body than on their own bones.
+//! Hands are never pushed apart: captured arms are often too short (CMU's end some centimetres before the wrist), and
+//! hands that were holding each other are then nearer on the canonical body than on their own bones.
 
 use glam::{Quat, Vec3};
 
@@ -64,8 +64,11 @@ fn palm(hand: &Capsule) -> Vec3 {
 
 /// Which hands touch, as captured. O(people^2 x frames).
 pub(super) fn measure(clips: &[Clip], rigs: &[Rig]) -> Vec<Touch> {
-    let hands: Vec<[Vec<Capsule>; 2]> = clips.iter().zip(rigs).map(|(clip, rig)| captured(clip, rig)).collect();
     let mut found = Vec::new();
+    if clips.len() < 2 {
+        return found;
+    }
+    let hands: Vec<[Vec<Capsule>; 2]> = clips.iter().zip(rigs).map(|(clip, rig)| captured(clip, rig)).collect();
     for a in 0..hands.len() {
         for b in a + 1..hands.len() {
             for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
