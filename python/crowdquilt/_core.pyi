@@ -330,7 +330,35 @@ def load_clip(
 def import_presets() -> list[tuple[str, str]]: ...
 def check_take(clips: list[Clip]) -> list[tuple[str, bool]]: ...
 def take_distances(clips: list[Clip]) -> list[tuple[int, int, float, float]]: ...
-def cut_patches(folder: AnyPath, captures: AnyPath | None = None) -> PatchSet: ...
+@final
+class Take:
+    name: str
+    people: int
+    annotated: bool
+    events: list[tuple[str, list[int], float, float]]
+    patches: list[str]
+    together: float
+    notes: list[str]
+
+@final
+class Made:
+    @property
+    def set(self) -> PatchSet: ...
+    @property
+    def takes(self) -> list[Take]: ...
+    def take_files(self) -> list[tuple[str, str]]: ...
+
+def make_patches(
+    source: AnyPath,
+    captures: AnyPath | None = None,
+    *,
+    threshold: float | None = None,
+    groups: int | None = None,
+    alone: int | None = None,
+    touch_gap: float | None = None,
+    near: float | None = None,
+    progress: Callable[[tuple[str, float]], bool | None] | None = None,
+) -> Made: ...
 def connectivity(patches: PatchSet) -> Connectivity: ...
 def kind_positions(patches: PatchSet, kind: int, role: int) -> Floats: ...
 def kind_capsules(patches: PatchSet, kind: int, role: int) -> Floats: ...

@@ -12,6 +12,7 @@ mod export;
 mod motion;
 mod numbers;
 mod patch;
+mod progress;
 mod refine;
 mod samples;
 mod stage;
@@ -32,7 +33,7 @@ mod _core {
     #[pymodule_export]
     use super::motion::{Clip, check_take, import_presets, load_clip, take_distances};
     #[pymodule_export]
-    use super::patch::{Kind, PatchSet, Role, cut_patches};
+    use super::patch::{Kind, Made, PatchSet, Role, Take, make_patches};
     #[pymodule_export]
     use super::refine::refine_crowd;
     #[pymodule_export]

@@ -11,6 +11,7 @@ use super::{Body, Segment};
 use crate::motion::contacts::palm;
 use crate::motion::ik::two_bone;
 use crate::motion::joint::{HEAD, LEFT_HAND, RIGHT_HAND, SPINE2};
+use crate::motion::limits::{excess, hold_back};
 use crate::motion::{BodyPart, JOINT_COUNT};
 use crate::patch::{Contact, Touch};
 
@@ -143,7 +144,7 @@ fn place_of(part: BodyPart, globals: &[(Vec3, Quat)]) -> Vec3 {
     }
 }
 
-/// Moves a hand that keeps its orientation, arm and fore-arm following.
+/// Moves a hand that keeps its orientation, arm and fore-arm following as far as their joints turn.
 fn move_hand(body: &mut Body, index: usize, hand: usize, shift: Vec3) {
     let mut globals = Vec::new();
     body.globals(index, &mut globals);
@@ -154,9 +155,11 @@ fn move_hand(body: &mut Body, index: usize, hand: usize, shift: Vec3) {
     let (swing, bend, _) = two_bone(globals[arm].0, globals[elbow].0, globals[hand].0, target, pole, 0.999);
     let (upper, fore) = (swing * globals[arm].1, swing * bend * globals[elbow].1);
     let pose = &mut body.rotations[index * JOINT_COUNT..(index + 1) * JOINT_COUNT];
-    pose[arm] = (globals[shoulder].1.inverse() * upper).normalize();
-    pose[elbow] = (upper.inverse() * fore).normalize();
-    pose[hand] = (fore.inverse() * globals[hand].1).normalize();
+    let mut turn =
+        |joint: usize, to: Quat| pose[joint] = hold_back(joint, to.normalize(), || excess(joint, pose[joint]));
+    turn(arm, globals[shoulder].1.inverse() * upper);
+    turn(elbow, upper.inverse() * fore);
+    turn(hand, fore.inverse() * globals[hand].1);
 }
 
 #[cfg(test)]
