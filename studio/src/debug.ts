@@ -7,7 +7,7 @@ import type { State, Store } from "./store";
 export interface Handle {
   /** Resolves with the first picture of the crowd; rejects with the message shown on the page. */
   ready: Promise<void>;
-  state(): Omit<State, "crowd">;
+  state(): Omit<State, "crowd" | "set">;
   seek(secs: number): Promise<void>;
   set<K extends keyof State>(key: K, value: State[K]): Promise<void>;
   frame(): { jsMs: number; meanMs: number; pictures: number; drawCalls: number; triangles: number };
