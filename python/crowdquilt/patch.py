@@ -4,10 +4,40 @@ from __future__ import annotations
 
 from os import PathLike
 
-from crowdquilt._core import Kind, Made, PatchSet, Role, Take
+from crowdquilt._core import (
+    Component,
+    Connectivity,
+    GroupLinks,
+    Kind,
+    Link,
+    Made,
+    PatchSet,
+    Role,
+    Steering,
+    Take,
+    connectivity,
+)
+from crowdquilt._core import kind_capsules as capsules
+from crowdquilt._core import kind_positions as positions
 from crowdquilt._core import make_patches as make
 
-__all__ = ["Kind", "Made", "PatchSet", "Role", "Take", "cut", "make"]
+__all__ = [
+    "Component",
+    "Connectivity",
+    "GroupLinks",
+    "Kind",
+    "Link",
+    "Made",
+    "PatchSet",
+    "Role",
+    "Steering",
+    "Take",
+    "capsules",
+    "connectivity",
+    "cut",
+    "make",
+    "positions",
+]
 
 
 def cut(source: str | PathLike[str], captures: str | PathLike[str] | None = None) -> PatchSet:

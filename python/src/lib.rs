@@ -6,6 +6,7 @@
 use pyo3::prelude::*;
 
 mod check;
+mod connectivity;
 mod error;
 mod export;
 mod motion;
@@ -21,6 +22,10 @@ mod tiling;
 mod _core {
     #[pymodule_export]
     use super::check::{Report, Row, Summary, check_crowd, summary};
+    #[pymodule_export]
+    use super::connectivity::{
+        Component, Connectivity, GroupLinks, Link, Steering, connectivity, kind_capsules, kind_positions,
+    };
     #[pymodule_export]
     use super::error::CrowdquiltError;
     #[pymodule_export]
