@@ -117,6 +117,8 @@ impl Made {
             let event = &annotation.found[k].events[lost.event];
             notes.push(format!("no patch of the event in frames {} to {}: {}", event.begin, event.end, lost.reason));
         }
+        let idle = self.takes[take].take.props.iter().filter(|p| p.held.is_empty());
+        notes.extend(idle.map(|p| format!("prop {}: expected somebody who holds it, found nobody", p.name)));
         if self.takes[take].take.patches.is_empty() {
             notes.push(annotation.why_no_piece(k));
         }
