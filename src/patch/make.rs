@@ -1,13 +1,13 @@
 //! From captures to a patch set: takes are collected, their people imported and retargeted, those that nobody annotated
-//! annotate themselves, and all are cut.
+//! annotate themselves, all are cut, and patches composed by hand are made of them.
 
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::PatchSet;
 use super::annotate::{AnnotateOptions, Annotation, annotate};
 use super::cut::{CutOptions, Source, cut, load_take};
+use super::{PatchSet, compose};
 use crate::Result;
 use crate::motion::Motion;
 use crate::motion::collection::{Collected, collect};
@@ -19,6 +19,8 @@ pub struct MakeOptions {
     pub cut: CutOptions,
     /// How takes without patches are annotated.
     pub annotate: AnnotateOptions,
+    /// Compose files (`*.compose.toml`), or folders of them, besides those in the collection's own folder.
+    pub compose: Vec<PathBuf>,
 }
 
 /// A set, and how it came about.
@@ -37,7 +39,7 @@ pub struct Made {
 /// The patch set of a folder, an index, a take file or a capture (see [`collect`]).
 ///
 /// # Errors
-/// As [`collect`], [`load_take`] and [`cut`].
+/// As [`collect`], [`load_take`], [`cut`] and [`compose::add`].
 pub fn make(path: &Path, options: &MakeOptions) -> Result<Made> {
     let mut takes = collect(path)?;
     let load = |c: &Collected| load_take(&c.origin, &c.take, &options.cut);
@@ -58,7 +60,10 @@ pub fn make(path: &Path, options: &MakeOptions) -> Result<Made> {
         .zip(motions)
         .map(|(c, motions)| Source { origin: c.origin.clone(), take: c.take.clone(), motions })
         .collect();
-    let set = cut(&sources, &options.cut)?;
+    let mut set = cut(&sources, &options.cut)?;
+    let own = path.is_dir().then(|| path.to_owned());
+    let compositions: Vec<PathBuf> = own.into_iter().chain(options.compose.iter().cloned()).collect();
+    compose::add(&mut set, &compositions, &sources, &options.cut)?;
     Ok(Made { set, takes, annotation, found_in: bare })
 }
 

@@ -3,6 +3,7 @@
 pub mod annotate;
 pub mod boundaries;
 pub mod boundary;
+pub mod compose;
 mod cut;
 #[cfg(test)]
 mod cut_tests;
