@@ -2,15 +2,16 @@
 //! annotate themselves, all are cut, and patches composed by hand are made of them.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
 use super::annotate::{AnnotateOptions, Annotation, annotate};
 use super::cut::{CutOptions, Source, cut, load_take};
 use super::{PatchSet, compose};
-use crate::Result;
 use crate::motion::Motion;
 use crate::motion::collection::{Collected, collect};
+use crate::{Error, Result};
 
 /// How a set is made.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,14 +37,40 @@ pub struct Made {
     pub found_in: Vec<usize>,
 }
 
+/// What is being done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Captures are read and retargeted, so many takes of so many.
+    Read(usize, usize),
+    /// Events and boundaries are looked for.
+    Find,
+    /// Patches are cut.
+    Cut,
+}
+
 /// The patch set of a folder, an index, a take file or a capture (see [`collect`]).
 ///
 /// # Errors
 /// As [`collect`], [`load_take`], [`cut`] and [`compose::add`].
 pub fn make(path: &Path, options: &MakeOptions) -> Result<Made> {
+    make_with(path, options, &|_| true)
+}
+
+/// As [`make`]; `report` hears of every step, on any thread, and says whether to go on.
+///
+/// # Errors
+/// As [`make`]; stopped.
+pub fn make_with(path: &Path, options: &MakeOptions, report: &(dyn Fn(Step) -> bool + Sync)) -> Result<Made> {
+    let reach = |step: Step| if report(step) { Ok(()) } else { Err(Error::Stopped) };
     let mut takes = collect(path)?;
-    let load = |c: &Collected| load_take(&c.origin, &c.take, &options.cut);
+    let done = AtomicUsize::new(0);
+    let load = |c: &Collected| {
+        let motions = load_take(&c.origin, &c.take, &options.cut)?;
+        reach(Step::Read(done.fetch_add(1, Ordering::Relaxed) + 1, takes.len()))?;
+        Ok(motions)
+    };
     let mut motions = takes.par_iter().map(load).collect::<Result<Vec<Vec<Motion>>>>()?;
+    reach(Step::Find)?;
     let bare: Vec<usize> = (0..takes.len()).filter(|&i| takes[i].take.patches.is_empty()).collect();
     let annotation = (!bare.is_empty()).then(|| {
         let mut files: Vec<_> = bare.iter().map(|&i| takes[i].take.clone()).collect();
@@ -55,6 +82,7 @@ pub fn make(path: &Path, options: &MakeOptions) -> Result<Made> {
         }
         annotation
     });
+    reach(Step::Cut)?;
     let sources: Vec<Source> = takes
         .iter()
         .zip(motions)
@@ -65,6 +93,42 @@ pub fn make(path: &Path, options: &MakeOptions) -> Result<Made> {
     let compositions: Vec<PathBuf> = own.into_iter().chain(options.compose.iter().cloned()).collect();
     compose::add(&mut set, &compositions, &sources, &options.cut)?;
     Ok(Made { set, takes, annotation, found_in: bare })
+}
+
+impl Made {
+    /// How much of a take's time lies within its patches of several people, 0 to 1: from the first entry to the last exit
+    /// of each.
+    pub fn together(&self, take: usize) -> f32 {
+        let Some(k) = self.found_in.iter().position(|&i| i == take) else { return 0.0 };
+        let Some(annotation) = &self.annotation else { return 0.0 };
+        let frames = annotation.found[k].frames.iter().copied().max().unwrap_or(0);
+        let mut covered = vec![false; frames];
+        for patch in annotation.boundaries.patches.iter().filter(|p| p.take == k) {
+            let first = patch.spans.iter().map(|s| s.entry.frame).min().unwrap_or(0);
+            let last = patch.spans.iter().map(|s| s.exit.frame).max().unwrap_or(0);
+            covered[first..=last].fill(true);
+        }
+        covered.iter().filter(|c| **c).count() as f32 / frames.max(1) as f32
+    }
+
+    /// Why nothing, or less than everything, came of a take that annotated itself; empty where all went well.
+    pub fn notes(&self, take: usize) -> Vec<String> {
+        let Some(k) = self.found_in.iter().position(|&i| i == take) else { return Vec::new() };
+        let Some(annotation) = &self.annotation else { return Vec::new() };
+        let mut notes: Vec<String> = Vec::new();
+        let people = self.takes[take].take.people.len();
+        notes.extend(annotation.found[k].why_nothing().filter(|_| people > 1));
+        for lost in annotation.boundaries.unbounded.iter().filter(|u| u.take == k) {
+            let event = &annotation.found[k].events[lost.event];
+            notes.push(format!("no patch of the event in frames {} to {}: {}", event.begin, event.end, lost.reason));
+        }
+        let idle = self.takes[take].take.props.iter().filter(|p| p.held.is_empty());
+        notes.extend(idle.map(|p| format!("prop {}: expected somebody who holds it, found nobody", p.name)));
+        if self.takes[take].take.patches.is_empty() {
+            notes.push(annotation.why_no_piece(k));
+        }
+        notes
+    }
 }
 
 /// The patch set of a folder (see [`make`]); captures are looked up in `captures` if given.

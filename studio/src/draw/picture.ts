@@ -5,7 +5,9 @@ import { type Crowd, duration } from "../crowd/model";
 import { sampleRoot } from "../crowd/sample";
 import { COLOR_MODES, type Store, type View } from "../store";
 import { Cameras } from "./cameras";
+import { discard } from "./discard";
 import { Loom } from "./loom";
+import type { Marks } from "./marks";
 import { type Hull, hulls, PatchOutlines } from "./outlines";
 import { People } from "./people";
 import { Stage } from "./stage";
@@ -19,6 +21,8 @@ interface Drawn {
   outlines: PatchOutlines;
   loom: Loom;
   hulls: Hull[];
+  /** Of a kind of a patch set. */
+  marks: Marks | null;
 }
 
 export interface FrameStats {
@@ -57,8 +61,9 @@ export class Picture {
     this.dirty = true;
   }
 
-  /** Builds everything that is drawn of a crowd. */
-  show(crowd: Crowd): void {
+  /** Builds everything that is drawn of a crowd, in place of the one before. */
+  show(crowd: Crowd, marks: Marks | null = null): void {
+    const before = this.drawn;
     const textures = new CrowdTextures(this.stage.renderer, crowd);
     const people = new People(crowd, textures);
     const all = hulls(crowd);
@@ -66,8 +71,16 @@ export class Picture {
     const loom = new Loom(crowd, all);
     this.stage.build(crowd);
     this.stage.scene.add(people.body, people.spots, outlines.mesh, loom.group);
-    this.drawn = { crowd, textures, people, outlines, loom, hulls: all };
-    this.aim(this.store.get("view"), false);
+    if (marks) this.stage.scene.add(marks.group);
+    this.drawn = { crowd, textures, people, outlines, loom, hulls: all, marks };
+    // After the new one is there: programs that both use are not compiled again.
+    if (before) this.drop(before);
+    this.aim(this.store.get("view"), false, before !== null);
+  }
+
+  private drop({ people, outlines, loom, marks, textures }: Drawn): void {
+    for (const gone of [people.body, people.spots, outlines.mesh, loom.group, marks?.group]) if (gone) discard(gone);
+    textures.dispose();
   }
 
   /** How high the present moment is drawn: on the ground, or on the loom's plane. */
@@ -75,19 +88,21 @@ export class Picture {
     return this.drawn && this.store.get("view") === "loom" ? this.drawn.loom.heightAt(this.store.get("time")) : 0;
   }
 
-  aim(view: View, fly: boolean): void {
+  /** Looks from a view's side, or, `turned`, from where one looks now. */
+  aim(view: View, fly: boolean, turned = false): void {
     if (!this.drawn) return;
     this.store.set("follow", false);
     const { center, radius } = this.stage;
     if (view === "loom") {
       const middle = center.clone().setY(this.drawn.loom.height * 0.43);
-      this.cameras.aim(view, middle, Math.hypot(radius, this.drawn.loom.height / 2) * 1.12, fly);
+      this.cameras.aim(view, middle, Math.hypot(radius, this.drawn.loom.height / 2) * 1.12, fly, turned);
     } else {
       this.cameras.aim(
         view,
-        center.clone().setY(view === "front" ? 0.2 : view === "persp" ? -radius * 0.05 : 0),
+        center.clone().setY(this.drawn.marks ? 0.55 : view === "front" ? 0.2 : view === "persp" ? -radius * 0.05 : 0),
         radius,
         fly,
+        turned,
       );
     }
     this.invalidate();
@@ -109,7 +124,7 @@ export class Picture {
     stats.triangles = this.stage.renderer.info.render.triangles;
   }
 
-  private draw({ people, outlines, loom }: Drawn): void {
+  private draw({ people, outlines, loom, marks }: Drawn): void {
     const { store, stage, cameras, lift } = this;
     const time = store.get("time");
     const inLoom = store.get("view") === "loom";
@@ -119,6 +134,10 @@ export class Picture {
     people.body.visible = people.spots.visible = store.get("bodies");
     people.update(time, lift);
     outlines.update(time, lift, store.get("outlines"), store.get("color"));
+    if (marks) {
+      marks.group.visible = !inLoom;
+      marks.update(time);
+    }
     loom.group.visible = inLoom;
     if (inLoom) loom.update(time, store.get("person") ?? -1);
     people.body.castShadow = !inLoom;

@@ -85,6 +85,15 @@ export class CrowdTextures {
     this.renderer.setRenderTarget(before);
   }
 
+  /** Frees everything. */
+  dispose(): void {
+    const { rotations, roots, people } = this.material.uniforms;
+    for (const { value } of [rotations, roots, people]) (value as DataTexture).dispose();
+    for (const texture of [this.looks, this.fragmentColors, this.builds]) texture.dispose();
+    this.poses.dispose();
+    this.material.dispose();
+  }
+
   /** The joint positions (x, y, z, presence) as the GPU has them, person by person. Slow: for tests. */
   readPositions(): Float32Array {
     const { width, height } = this.poses;
