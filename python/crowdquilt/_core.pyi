@@ -358,6 +358,7 @@ def make_patches(
     alone: int | None = None,
     touch_gap: float | None = None,
     near: float | None = None,
+    compose: Sequence[AnyPath] | None = None,
     progress: Callable[[tuple[str, float]], bool | None] | None = None,
 ) -> Made: ...
 def connectivity(patches: PatchSet) -> Connectivity: ...

@@ -32,9 +32,10 @@ pub fn mirrored(kind: &PatchKind, groups: &mut Vec<PoseGroup>) -> PatchKind {
     }
 }
 
-/// Adds the mirrored copy of every kind that is not labelled `symmetric`, after the kinds themselves.
-pub(super) fn add_mirrored(set: &mut PatchSet) {
-    let originals = set.kinds.iter().filter(|k| !k.labels.iter().any(|l| l == SYMMETRIC));
+/// Adds the mirrored copy of every kind from number `first` on that is not labelled `symmetric`, after the kinds
+/// themselves.
+pub(super) fn add_mirrored(set: &mut PatchSet, first: usize) {
+    let originals = set.kinds[first..].iter().filter(|k| !k.labels.iter().any(|l| l == SYMMETRIC));
     let copies: Vec<PatchKind> = originals.map(|kind| mirrored(kind, &mut set.groups)).collect();
     set.kinds.extend(copies);
 }

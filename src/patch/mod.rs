@@ -3,6 +3,7 @@
 pub mod annotate;
 pub mod boundaries;
 pub mod boundary;
+pub mod compose;
 pub mod connectivity;
 mod cut;
 #[cfg(test)]
