@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use glam::Vec2;
 
 use super::file::filed_rotation;
+use super::cut_props as props;
 use super::mirror::{add_mirrored, find_or_add};
 use super::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};
 use crate::motion::take::{TakeContact, TakeFile, TakePatch, TakeRole};
@@ -31,8 +32,7 @@ impl Default for CutOptions {
     }
 }
 
-/// Cuts the patches of all take files, in their order, into one set. Patches in which somebody holds a prop are left
-/// out: sets and crowds do not carry props yet, and hands around nothing look wrong.
+/// Cuts the patches of all take files, in their order, into one set.
 ///
 /// # Errors
 /// A take file or capture is bad (names the file and the line or field); a role outside its capture or without a
@@ -42,7 +42,7 @@ pub fn cut(takes: &[PathBuf], options: &CutOptions) -> Result<PatchSet> {
     for path in takes {
         let take = TakeFile::load(path)?;
         let motions = load_take(path, &take, options)?;
-        for patch in take.patches.iter().filter(|p| !holds_prop(&take, p)) {
+        for patch in &take.patches {
             let cutter = Cutter { take: &take, motions: &motions, patch, options };
             let kind = cutter.kind(&mut set.groups).map_err(|e| e.in_file(path))?;
             if set.kinds.iter().any(|k| k.name == kind.name) {
@@ -67,12 +67,6 @@ fn round(set: &mut PatchSet) {
     for fragment in set.kinds.iter_mut().flat_map(|k| &mut k.fragments) {
         fragment.motion.rotations.iter_mut().for_each(|q| *q = filed_rotation(*q));
     }
-}
-
-fn holds_prop(take: &TakeFile, patch: &TakePatch) -> bool {
-    let holds = take.props.iter().flat_map(|prop| &prop.held);
-    let overlap = |role: &TakeRole, begin: f32, end: f32| role.begin < end && begin < role.end;
-    holds.into_iter().any(|h| patch.roles.iter().any(|r| r.person == h.person && overlap(r, h.begin, h.end)))
 }
 
 /// Cuts all take files (`*.take.json`) of a folder, sorted by name; captures are looked up in `captures` if given.
@@ -138,7 +132,7 @@ pub fn load_take(path: &Path, take: &TakeFile, options: &CutOptions) -> Result<V
 }
 
 /// The frame nearest to a time in seconds.
-fn frame(time: f32) -> usize {
+pub(super) fn frame(time: f32) -> usize {
     (time * FPS).round() as usize
 }
 
@@ -162,6 +156,7 @@ impl Cutter<'_> {
             labels: self.patch.labels.clone(),
             contacts: contacts.collect(),
             core: self.core(start, &fragments)?,
+            props: props::of_patch(self.take, self.patch, start, &fragments).map_err(|problem| self.bad(problem))?,
             fragments,
             mirrored: false,
         })

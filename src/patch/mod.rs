@@ -3,11 +3,13 @@
 pub mod boundaries;
 pub mod boundary;
 mod cut;
+mod cut_props;
 #[cfg(test)]
 mod cut_tests;
 pub mod episode;
 mod file;
 mod mirror;
+mod prop;
 pub mod propose;
 mod set;
 mod speed;
@@ -17,4 +19,5 @@ pub(crate) use speed::{fastest_turns, turn_between};
 
 pub use cut::{CutOptions, cut, cut_folder, load_take};
 pub use mirror::mirrored;
+pub use prop::{PatchProp, PropHold};
 pub use set::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};

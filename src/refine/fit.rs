@@ -25,7 +25,7 @@ const APPROACH_FRAMES: f32 = 20.0;
 /// A touching hand or a foot that falls short of its place by more than this is told, metres.
 const MAX_MISS: f32 = 0.004;
 
-/// A hand that touches somebody, in frames of the body's motion.
+/// A hand that touches somebody or holds a box, in frames of the body's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
     hand: JointId,
@@ -41,7 +41,8 @@ impl Hold {
     }
 }
 
-/// When whose hands touch others over a chain of segments; `begin` is the first frame of the body's motion.
+/// When which hands touch others or hold a box over a chain of segments; `begin` is the first frame of the body's
+/// motion.
 pub fn holds(segments: &[Segment], begin: u32) -> Vec<Hold> {
     let mut holds = Vec::new();
     for segment in segments {
@@ -57,6 +58,10 @@ pub fn holds(segments: &[Segment], begin: u32) -> Vec<Hold> {
                 };
                 holds.push(Hold { hand, begin: frame(contact.begin) - 1.0, end: frame(contact.end) + 1.0 });
             }
+        }
+        for hold in segment.kind.props.iter().flat_map(|p| &p.holds).filter(|h| h.role == role) {
+            let (begin, end) = (frame(hold.begin) - 1.0, frame(hold.end) + 1.0);
+            holds.extend([LEFT_HAND, RIGHT_HAND].map(|hand| Hold { hand, begin, end }));
         }
     }
     holds

@@ -30,6 +30,8 @@ const LONGEST_BRIDGE: i32 = 110;
 const MAX_BYSTANDERS: usize = 4;
 /// Ticks before and after their collision that they may use to do so.
 const BYSTANDER_TICKS: i32 = 15;
+/// As long as no way there is, metres.
+const NO_WAY: f32 = 1e3;
 /// Room that the ends of a patch must have to walls, metres.
 const WALL_ROOM: f32 = 0.4;
 
@@ -80,16 +82,18 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
         let part = |track, keep_before, keep_after| Part { track, role, entry, exit, keep_before, keep_after };
         let part = if role != lead_role {
             let taken = |t: TrackId| t == lead_track || parts.iter().any(|p| p.track == t);
-            let (track, from, to) = player(tracks, &entry, &exit, taken, &mut near, rng)?;
+            let heir = heir(tracks, role, exit, world_from_patch, clock);
+            let (track, from, to) = player(tracks, &entry, &heir, taken, &mut near, rng)?;
             part(track, from, to)
         } else if let Some(joint) = joint {
             // The very numbers of the joint, not ones that differ by rounding.
             entry.at = at;
-            let to = rip_to(tracks, lead_track, &entry, &exit)?;
+            let to = rip_to(tracks, lead_track, &entry, &heir(tracks, role, exit, world_from_patch, clock))?;
             Part { track: lead_track, role, entry, exit, keep_before: joint, keep_after: to }
         } else {
             let from = rip_from(tracks, lead_track, &entry)?;
-            part(lead_track, from, rip_to(tracks, lead_track, &entry, &exit)?)
+            let heir = heir(tracks, role, exit, world_from_patch, clock);
+            part(lead_track, from, rip_to(tracks, lead_track, &entry, &heir)?)
         };
         parts.push(part);
     }
@@ -117,6 +121,23 @@ fn meeting_point(
     let on_the_way = tracks.state_at(track, tick.max(0));
     let aside = Vec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * JITTER;
     (on_the_way.then(Ground::new(aside, rng.random_range(-JITTER_TURN..JITTER_TURN))), tick, None)
+}
+
+/// From where a role's future is taken over: from its own exit, but where a box is handed on the one who comes with it
+/// leaves their future to the one who goes with it.
+fn heir(tracks: &Tracks, role: u32, exit: Port, world_from_patch: Ground, clock: i32) -> Port {
+    let library = tracks.library;
+    let laden = |group: u32| library.laden[group as usize];
+    let entry = laden(library.roles[role as usize].entry_group);
+    if entry == laden(exit.group) {
+        return exit;
+    }
+    let mut others = library.roles_of(library.roles[role as usize].kind);
+    let swaps = |&r: &u32| {
+        let other = &library.roles[r as usize];
+        laden(other.entry_group) != entry && laden(other.exit_group) == entry
+    };
+    others.find(swaps).map_or(exit, |r| ports(tracks, r, world_from_patch, clock).1)
 }
 
 fn ports(tracks: &Tracks, role: u32, world_from_patch: Ground, clock: i32) -> (Port, Port) {
@@ -271,12 +292,17 @@ fn step_aside(tracks: &mut Tracks, parts: &[Part], pieces: &[Piece], undo: &mut 
     Some(windows)
 }
 
-/// Whose future each part takes over: the pairing with the least way to go (parts are few).
+/// Whose future each part takes over: the pairing with the least way to go (parts are few). Nobody lives on with a box
+/// who has none.
 fn futures(tracks: &Tracks, parts: &[Part]) -> Vec<usize> {
     let way = |i: usize, j: usize| {
         let to = tracks.port(parts[j].track, parts[j].keep_after);
         let left = (to.tick - parts[i].exit.tick) as f32 / FPS;
         let open = parts[j].keep_after == tracks.tracks[parts[j].track].len();
+        let laden = |group: u32| tracks.library.laden[group as usize];
+        if !open && laden(to.group) != laden(parts[i].exit.group) {
+            return NO_WAY;
+        }
         if open { 0.0 } else { (parts[i].exit.at.position.distance(to.at.position) - 0.8 * left).abs() }
     };
     let mut order: Vec<usize> = (0..parts.len()).collect();

@@ -2,6 +2,7 @@
 
 mod audition;
 mod bake;
+mod boxes;
 mod bridge;
 mod builds;
 mod domain;

@@ -7,7 +7,7 @@ use glam::Vec2;
 use super::bridge::NO_INSTANCE;
 use super::domain::Domain;
 use super::footprint::{DISCS, Footprint};
-use super::library::Library;
+use super::library::{Library, Role};
 use crate::geom::{Ground, Turn};
 use crate::motion::MotionPath;
 
@@ -18,6 +18,9 @@ const CELL_BODIES: usize = 7;
 
 /// Cells beyond which nothing is looked for.
 const FAR: f32 = 1024.0;
+
+/// In place of a source frame: a box that lies there before (+ 0) or after (+ 1) the piece.
+const LYING: u32 = u32::MAX - 1;
 
 /// Index of a placed piece.
 pub(super) type PieceId = u32;
@@ -44,7 +47,10 @@ pub(super) struct Piece {
     pub end: i32,
     /// The deformed path.
     pub path: MotionPath,
-    /// The bodies on the ticks it occupies: [begin, end) cut to [0, horizon).
+    /// First tick of `bodies`.
+    shown_from: i32,
+    /// The bodies on the ticks it occupies: [begin, end) cut to [0, horizon); before and after them the box that lies
+    /// there until the piece takes it up, or from when it puts it down.
     bodies: Vec<Body>,
 }
 
@@ -85,7 +91,30 @@ impl Piece {
             }
         });
         let bodies = bodies.collect();
-        Self { role, instance, begin, end, path, bodies }
+        let mut piece = Self { role, instance, begin, end, path, shown_from: begin.max(0), bodies };
+        piece.lay_boxes(source, domain.horizon);
+        piece
+    }
+
+    /// Puts boxes where they lie before the piece begins and after it ends.
+    fn lay_boxes(&mut self, source: &Role, horizon: i32) {
+        let lying = |k: usize, ticks: i32| {
+            let rest = source.rests[k].as_ref().filter(|_| ticks > 0)?;
+            let at = self.path.at(rest.frame).then(rest.from_path);
+            let body = Body {
+                position: at.position,
+                turn: at.turn(),
+                reach: rest.reach,
+                frame: LYING + k as u32,
+            };
+            Some(std::iter::repeat_n(body, ticks as usize))
+        };
+        let (before, after) = (lying(0, self.begin.min(horizon)), lying(1, horizon - self.end.max(0)));
+        self.bodies.extend(after.into_iter().flatten());
+        if let Some(before) = before {
+            self.bodies.splice(..0, before);
+            self.shown_from = 0;
+        }
     }
 
     /// State at the entry.
@@ -98,19 +127,36 @@ impl Piece {
         self.path.at(self.path.len() - 1)
     }
 
-    fn first_tick(&self) -> i32 {
-        self.begin.max(0)
+    fn body(&self, tick: i32) -> Option<&Body> {
+        self.bodies.get(usize::try_from(tick - self.shown_from).ok()?)
     }
 
     /// Place and heading at a tick the piece occupies.
     pub fn state(&self, tick: i32) -> Ground {
-        let body = &self.bodies[(tick - self.first_tick()) as usize];
+        let body = self.body(tick).expect("a tick the piece occupies");
         Ground::new(body.position, body.turn.angle())
+    }
+
+    /// True if the person is in the piece at a tick.
+    pub fn is_played(&self, tick: i32) -> bool {
+        self.begin <= tick && tick < self.end
     }
 
     /// Ticks inside the domain's time.
     pub fn ticks_inside(&self) -> usize {
-        self.bodies.len()
+        self.bodies.iter().filter(|b| b.frame < LYING).count()
+    }
+
+    /// True if a box lies there before or after the piece.
+    pub fn leaves_box(&self) -> bool {
+        [self.bodies.first(), self.bodies.last()].into_iter().flatten().any(|b| b.frame >= LYING)
+    }
+
+    /// True if this piece and another are ever in each other's way.
+    pub fn meets(&self, other: &Self, library: &Library) -> bool {
+        let until = |p: &Self| p.shown_from + p.bodies.len() as i32;
+        let ticks = self.shown_from.max(other.shown_from)..until(self).min(until(other));
+        ticks.into_iter().any(|tick| depth(library, self, other, tick).is_some())
     }
 }
 
@@ -192,7 +238,7 @@ impl Occupancy {
     /// Puts the bodies of a hidden piece back.
     pub fn show(&mut self, id: PieceId) {
         let piece = self.pieces[id as usize].take().expect("a live piece");
-        for (tick, body) in (piece.first_tick()..).zip(&piece.bodies) {
+        for (tick, body) in (piece.shown_from..).zip(&piece.bodies) {
             let cell = self.cell_of(tick, body.position);
             let cell = &mut self.cells[cell];
             cell.bodies[cell.count as usize] = Shown { id, position: body.position, reach: body.reach };
@@ -204,7 +250,7 @@ impl Occupancy {
     /// Takes the bodies of a piece out, keeping the piece.
     pub fn hide(&mut self, id: PieceId) {
         let piece = self.pieces[id as usize].take().expect("a live piece");
-        for (tick, body) in (piece.first_tick()..).zip(&piece.bodies) {
+        for (tick, body) in (piece.shown_from..).zip(&piece.bodies) {
             let cell = self.cell_of(tick, body.position);
             let cell = &mut self.cells[cell];
             let at = cell.bodies[..cell.count as usize].iter().position(|b| b.id == id).expect("shown");
@@ -265,8 +311,7 @@ impl Occupancy {
     fn is_inside(&self, library: &Library, domain: &Domain, piece: &Piece, i: usize) -> bool {
         let body = &piece.bodies[i];
         domain.holds(body.position, body.reach) || {
-            let footprint = &library.roles[piece.role as usize].footprints[body.frame as usize];
-            world_discs(body, footprint).iter().all(|d| domain.holds(d.truncate(), d.z))
+            world_discs(body, footprint(library, piece.role, body)).iter().all(|d| domain.holds(d.truncate(), d.z))
         }
     }
 
@@ -280,8 +325,7 @@ impl Occupancy {
         met: &mut impl FnMut(Option<PieceId>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let body = &piece.bodies[i];
-        let tick = piece.first_tick() + i as i32;
-        let footprint = |role: u32, frame: u32| &library.roles[role as usize].footprints[frame as usize];
+        let tick = piece.shown_from + i as i32;
         let reach = body.reach + self.max_reach;
         let mut discs = None;
         let (columns, rows) = self.cells_within(body.position, reach);
@@ -300,9 +344,9 @@ impl Occupancy {
                     if other.instance == piece.instance && piece.instance != NO_INSTANCE {
                         continue;
                     }
-                    let theirs = &other.bodies[(tick - other.first_tick()) as usize];
-                    let own = discs.get_or_insert_with(|| world_discs(body, footprint(piece.role, body.frame)));
-                    if overlap(own, &world_discs(theirs, footprint(other.role, theirs.frame))) {
+                    let theirs = other.body(tick).expect("shown at this tick");
+                    let own = discs.get_or_insert_with(|| world_discs(body, footprint(library, piece.role, body)));
+                    if overlap(own, &world_discs(theirs, footprint(library, other.role, theirs))) {
                         met(Some(shown.id))?;
                     }
                 }
@@ -316,7 +360,7 @@ impl Occupancy {
         (low.0.max(0)..=high.0.min(self.columns - 1), low.1.max(0)..=high.1.min(self.rows - 1))
     }
 
-    /// Ids of the pieces whose path points lie within `distance` of `position` at `tick`, in no particular order.
+    /// Ids of the pieces whose people's path points lie within `distance` of `position` at `tick`, in no particular order.
     pub fn near(&self, tick: i32, position: Vec2, distance: f32, out: &mut Vec<PieceId>) {
         out.clear();
         let (columns, rows) = self.cells_within(position, distance);
@@ -324,7 +368,8 @@ impl Occupancy {
             for x in columns.clone() {
                 let cell = &self.cells[((tick * self.rows + z) * self.columns + x) as usize];
                 let near = |b: &&Shown| b.position.distance_squared(position) < distance * distance;
-                out.extend(cell.bodies[..cell.count as usize].iter().filter(near).map(|b| b.id));
+                let near = cell.bodies[..cell.count as usize].iter().filter(near).map(|b| b.id);
+                out.extend(near.filter(|&id| self.piece(id).is_played(tick)));
             }
         }
     }
@@ -333,12 +378,8 @@ impl Occupancy {
 /// How deep the footprints of two pieces overlap at a tick, metres; `None` if either is not there, or they are apart.
 pub(super) fn depth(library: &Library, a: &Piece, b: &Piece, tick: i32) -> Option<f32> {
     let body = |p: &Piece| {
-        let body = p.bodies.get(usize::try_from(tick - p.first_tick()).ok()?)?;
-        Some((
-            body.position,
-            body.reach,
-            world_discs(body, &library.roles[p.role as usize].footprints[body.frame as usize]),
-        ))
+        let body = p.body(tick)?;
+        Some((body.position, body.reach, world_discs(body, footprint(library, p.role, body))))
     };
     let ((at, reach, own), (other_at, other_reach, others)) = (body(a)?, body(b)?);
     if at.distance(other_at) >= reach + other_reach {
@@ -346,6 +387,14 @@ pub(super) fn depth(library: &Library, a: &Piece, b: &Piece, tick: i32) -> Optio
     }
     let pairs = own.iter().flat_map(|p| others.iter().map(move |q| p.z + q.z - p.truncate().distance(q.truncate())));
     pairs.reduce(f32::max).filter(|&d| d > 0.0)
+}
+
+fn footprint<'a>(library: &'a Library, role: u32, body: &Body) -> &'a Footprint {
+    let role = &library.roles[role as usize];
+    match body.frame.checked_sub(LYING) {
+        None => &role.footprints[body.frame as usize],
+        Some(k) => &role.rests[k as usize].as_ref().expect("a box lies there").footprint,
+    }
 }
 
 fn world_discs(body: &Body, footprint: &Footprint) -> Footprint {

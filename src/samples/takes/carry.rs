@@ -27,7 +27,7 @@ pub(super) fn scenes() -> Vec<Scene> {
 /// The palm of one side on the box held before the belly.
 pub(super) fn held(side: Foot) -> Grip {
     let s = if side == Left { 1.0 } else { -1.0 };
-    grip(Relative::Chest, [s * 0.5 * BOX[0], -0.26, 0.35], [s * -0.06, 0.02, 1.0], [-s, 0.0, 0.0])
+    grip(Relative::Chest, [s * 0.5 * BOX[0], -0.26, 0.30], [s * -0.06, 0.02, 1.0], [-s, 0.0, 0.0])
 }
 
 /// Holds the box from `from` to `to` seconds of the actor's clock, faded at the ends.
@@ -50,7 +50,7 @@ fn carrier() -> Actor {
 
 fn scene(name: &str, a: Actor, patches: &[(&str, &[&str], i32, i32)]) -> Scene {
     let mut scene = solo(name, a, patches);
-    scene.hold_box(vec![(0, None)]);
+    scene.hold_box(0, None, None);
     scene
 }
 

@@ -4,6 +4,7 @@ import { Vector3 } from "three";
 import { type Crowd, duration } from "../crowd/model";
 import { sampleRoot } from "../crowd/sample";
 import { COLOR_MODES, type Store, type View } from "../store";
+import { Boxes } from "./boxes";
 import { Cameras } from "./cameras";
 import { Loom } from "./loom";
 import { type Hull, hulls, PatchOutlines } from "./outlines";
@@ -16,6 +17,7 @@ interface Drawn {
   crowd: Crowd;
   textures: CrowdTextures;
   people: People;
+  boxes: Boxes;
   outlines: PatchOutlines;
   loom: Loom;
   hulls: Hull[];
@@ -61,12 +63,13 @@ export class Picture {
   show(crowd: Crowd): void {
     const textures = new CrowdTextures(this.stage.renderer, crowd);
     const people = new People(crowd, textures);
+    const boxes = new Boxes(crowd);
     const all = hulls(crowd);
     const outlines = new PatchOutlines(crowd, all);
     const loom = new Loom(crowd, all);
     this.stage.build(crowd);
-    this.stage.scene.add(people.body, people.spots, outlines.mesh, loom.group);
-    this.drawn = { crowd, textures, people, outlines, loom, hulls: all };
+    this.stage.scene.add(people.body, people.spots, boxes.group, outlines.mesh, loom.group);
+    this.drawn = { crowd, textures, people, boxes, outlines, loom, hulls: all };
     this.aim(this.store.get("view"), false);
   }
 
@@ -109,7 +112,7 @@ export class Picture {
     stats.triangles = this.stage.renderer.info.render.triangles;
   }
 
-  private draw({ people, outlines, loom }: Drawn): void {
+  private draw({ people, boxes, outlines, loom }: Drawn): void {
     const { store, stage, cameras, lift } = this;
     const time = store.get("time");
     const inLoom = store.get("view") === "loom";
@@ -118,6 +121,8 @@ export class Picture {
     people.uniforms.chosen.value = store.get("person") ?? -1;
     people.body.visible = people.spots.visible = store.get("bodies");
     people.update(time, lift);
+    boxes.group.visible = store.get("bodies");
+    boxes.update(time, lift, !inLoom);
     outlines.update(time, lift, store.get("outlines"), store.get("color"));
     loom.group.visible = inLoom;
     if (inLoom) loom.update(time, store.get("person") ?? -1);
