@@ -84,13 +84,13 @@ fn hand_over(tone: usize) -> Crowd {
     let (index, pass) = kind("pass-box-stand");
     let instance = b.instance(index);
     let begin = 108;
-    let role = |b: &Builder, r: u32| b.place(pass, instance, r, Ground::IDENTITY, begin + pass.fragments[r as usize].begin as i32);
+    let role = |b: &Builder, r: u32| {
+        b.place(pass, instance, r, Ground::IDENTITY, begin + pass.fragments[r as usize].begin as i32)
+    };
     let (giver, taker) = (role(&b, 0), role(&b, 1));
     let idle = ["idle-1.5"; 3];
-    let chains = [
-        b.chain(&["take-up", "carry-idle"], giver, &idle),
-        b.chain(&idle, taker, &["carry-idle", "put-down"]),
-    ];
+    let chains =
+        [b.chain(&["take-up", "carry-idle"], giver, &idle), b.chain(&idle, taker, &["carry-pivot-90", "put-down"])];
     let last = chains.iter().map(|c| c.last().unwrap().end).min().unwrap();
     let (stand, idle) = kind("idle-2.5");
     let instance = b.instance(stand);
@@ -267,7 +267,10 @@ fn a_box_in_a_wall_and_one_in_the_floor() {
         c.domain.obstacles.push(Polygon::rectangle(corner, corner + Vec2::new(0.02, 0.02)));
     };
     fails(wall, &["outside the region or in obstacles"]);
-    fails(|c| c.props[0].places[0..5].iter_mut().for_each(|p| p.middle.y -= 0.02), &["held by nobody", "below the floor"]);
+    fails(
+        |c| c.props[0].places[0..5].iter_mut().for_each(|p| p.middle.y -= 0.02),
+        &["held by nobody", "below the floor"],
+    );
 }
 
 #[test]
@@ -297,8 +300,8 @@ fn sets_whose_boxes_make_no_sense_are_refused() {
         let found = problems(fault);
         assert!(words.iter().all(|w| found.contains(w)), "expected {words:?}, found {found}");
     };
-    said(|s| of(s, "carry-idle").props.clear(), &["kind carry-idle", "pose group carry_stand", "found empty hands"]);
-    said(|s| of(s, "carry-idle").props[0].size[0] += 0.1, &["carry-idle", "pose group carry_stand", "0.46"]);
+    said(|s| of(s, "carry-stop").props.clear(), &["kind carry-stop", "pose group carry_stand", "found empty hands"]);
+    said(|s| of(s, "carry-stop").props[0].size[0] += 0.1, &["carry-stop", "pose group carry_stand", "0.46"]);
     said(|s| of(s, "take-up").props[0].before = None, &["take-up", "role 0 neither brings it along nor takes it up"]);
     said(|s| of(s, "put-down").props[0].holds[0].end = 9999, &["put-down", "outside its fragment"]);
     said(|s| of(s, "put-down").props[0].size[2] = f32::NAN, &["put-down", "expected extents above 0"]);
@@ -353,4 +356,47 @@ fn the_head_of_who_carries_is_clear_of_the_box() {
         let from_box = prop.at_frame(frame).unwrap().at.seen_from(globals[joint::HEAD].0);
         assert!(from_box.y > 0.2 || from_box.z.abs() > 0.3, "frame {frame}: {from_box}");
     }
+}
+
+#[test]
+fn boxes_are_in_the_glb() {
+    let bytes = crowdquilt::export::glb(&CROWD);
+    std::fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join("boxes.glb"), &bytes).unwrap();
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let json: serde_json::Value = serde_json::from_slice(&bytes[20..20 + length]).unwrap();
+    let nodes = json["nodes"].as_array().unwrap();
+    let node = nodes.iter().position(|n| n["name"] == "box_0").expect("a node of the box");
+    assert!(nodes[node]["mesh"].is_number() && nodes[node]["extras"]["box"] == 0);
+    assert!(json["scenes"][0]["nodes"].as_array().unwrap().contains(&node.into()));
+    let channels = json["animations"][0]["channels"].as_array().unwrap();
+    let moved: Vec<&str> = channels
+        .iter()
+        .filter(|c| c["target"]["node"] == node)
+        .map(|c| c["target"]["path"].as_str().unwrap())
+        .collect();
+    assert_eq!(moved, ["translation", "rotation"]);
+    // While it lies still it needs no keys.
+    let sampler = channels.iter().find(|c| c["target"]["node"] == node).unwrap()["sampler"].as_u64().unwrap() as usize;
+    let input = json["animations"][0]["samplers"][sampler]["input"].as_u64().unwrap() as usize;
+    let keys = json["accessors"][input]["count"].as_u64().unwrap() as usize;
+    let still = CROWD.props[0].places.windows(2).filter(|w| w[0] == w[1]).count();
+    assert!(still > 20 && keys <= CROWD.props[0].places.len() - still + 4, "{keys} keys, {still} still frames");
+}
+
+#[test]
+fn crowd_files_with_broken_boxes_are_refused() {
+    let bytes = CROWD.to_bytes();
+    let refused = |from: &str, to: &str, says: &str| {
+        assert_eq!(from.len(), to.len());
+        let at = bytes.windows(from.len()).position(|w| w == from.as_bytes()).unwrap_or_else(|| panic!("no {from}"));
+        let mut broken = bytes.clone();
+        broken[at..at + to.len()].copy_from_slice(to.as_bytes());
+        let error = Crowd::from_bytes(&broken).unwrap_err().to_string();
+        assert!(error.contains(says), "{error}");
+    };
+    refused("\"prop_places\"", "\"prop_placez\"", "array prop_places: expected, not found");
+    refused("\"character\":1", "\"character\":7", "prop 0: expected a holder below 3, found 7");
+    let frames = format!("\"frames\":{},\"holds\"", CROWD.props[0].places.len());
+    refused(&frames, &frames.replace(":3", ":9"), "prop 0: its frames reach beyond the arrays");
+    refused("\"size\":[", "\"size\":\"", "expected");
 }

@@ -52,7 +52,9 @@ pub(super) fn references(crowd: &Crowd) -> Row {
     }
     for (i, prop) in crowd.props.iter().enumerate().filter(|(_, p)| !prop_is_sound(crowd, p)) {
         let frames = prop.places.len();
-        faults.add(|| format!("box {i}: held by nobody who exists, or without size, or its {frames} frames are not places"));
+        faults.add(|| {
+            format!("box {i}: held by nobody who exists, or without size, or its {frames} frames are not places")
+        });
     }
     faults.row(0, "references")
 }

@@ -113,7 +113,9 @@ fn keeping_of(i: usize, prop: &Prop, crowd: &Crowd, captured: &[Captured], fault
         let mut holders = prop.holders(frame);
         let (first, second, more) = (holders.next(), holders.next(), holders.next());
         for c in [first, second].into_iter().flatten().filter(|&c| of(c, frame).is_none()) {
-            faults.add(|| format!("box {i}, frame {frame}: in the hands of character {c}, who holds none in the capture"));
+            faults.add(|| {
+                format!("box {i}, frame {frame}: in the hands of character {c}, who holds none in the capture")
+            });
         }
         let together = match (first, second) {
             (Some(a), Some(b)) => matches!((of(a, frame), of(b, frame)), (Some(x), Some(y)) if x.of == y.of),
@@ -206,7 +208,8 @@ fn captured_depth(crowd: &Crowd, parts: &[Part], prop: &Prop, character: usize, 
             prop.holds.iter().any(|h| h.character as usize == q.character && h.begin < span.end && span.start <= h.end)
         })
     };
-    let depths = mine.filter(|p| handles(p)).flat_map(|p| (0..p.kind.props.len()).map(move |k| depth_in_capture(p, k, frame)));
+    let depths =
+        mine.filter(|p| handles(p)).flat_map(|p| (0..p.kind.props.len()).map(move |k| depth_in_capture(p, k, frame)));
     depths.fold(0.0, f32::max)
 }
 

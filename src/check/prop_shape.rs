@@ -81,7 +81,8 @@ impl Block {
     /// How far the box reaches out of the region or into obstacles, metres.
     pub(super) fn depth_in_walls(&self, domain: &DomainInfo) -> f32 {
         let turn = Quat::from_rotation_y(self.at.heading);
-        let corner = |x: f32, z: f32| on_ground(self.at.middle + turn * Vec3::new(x * self.half.x, 0.0, z * self.half.z));
+        let corner =
+            |x: f32, z: f32| on_ground(self.at.middle + turn * Vec3::new(x * self.half.x, 0.0, z * self.half.z));
         let plan = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
         let out = plan.iter().map(|&p| domain.region.signed_distance(p)).fold(0.0, f32::max);
         domain.obstacles.iter().map(|o| depth_of_plan(plan, o)).fold(out, f32::max)

@@ -243,7 +243,10 @@ impl TakeProp {
         for (k, pair) in self.held.windows(2).enumerate() {
             if !(pair[0].begin < pair[1].begin && pair[0].end < pair[1].end) {
                 let found = "expected to begin and to end after the hold before";
-                problems.push((format!(".held[{}]", k + 1), format!("{found}, found {} to {}", pair[1].begin, pair[1].end)));
+                problems.push((
+                    format!(".held[{}]", k + 1),
+                    format!("{found}, found {} to {}", pair[1].begin, pair[1].end),
+                ));
             } else if pair[0].person == pair[1].person && pair[1].begin <= pair[0].end {
                 let found = format!("expected another person to take over, found person {} again", pair[1].person);
                 problems.push((format!(".held[{}]", k + 1), found));

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec2;
 
-use super::file::filed_rotation;
 use super::cut_props as props;
+use super::file::filed_rotation;
 use super::mirror::{add_mirrored, find_or_add};
 use super::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};
 use crate::motion::take::{TakeContact, TakeFile, TakePatch, TakeRole};

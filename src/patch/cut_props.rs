@@ -56,14 +56,8 @@ impl Cutter<'_> {
         }
         let mut holds: Vec<PropHold> = held.iter().map(|h| h.hold).collect();
         self.lengthen_passes(&mut holds);
-        let mut cut = PatchProp {
-            name: prop.name.clone(),
-            size: prop.size,
-            grip: prop.grip,
-            holds,
-            before: None,
-            after: None,
-        };
+        let mut cut =
+            PatchProp { name: prop.name.clone(), size: prop.size, grip: prop.grip, holds, before: None, after: None };
         (cut.before, cut.after) = (
             first.whole[0].then(|| self.rest(&cut, cut.holds[0].begin)),
             last.whole[1].then(|| self.rest(&cut, cut.holds[cut.holds.len() - 1].end)),

@@ -176,7 +176,8 @@ impl PatchSet {
             }
             for (role, f) in kind.fragments.iter().enumerate() {
                 let carried = [kind.carried_in(role as u32), kind.carried_out(role as u32)];
-                for ((group, end), prop) in [(f.entry_group, "entry"), (f.exit_group, "exit")].into_iter().zip(carried) {
+                for ((group, end), prop) in [(f.entry_group, "entry"), (f.exit_group, "exit")].into_iter().zip(carried)
+                {
                     let port = Port { kind, role, end, prop: prop.map(|p| &kind.props[p]) };
                     let Some(known) = first.get_mut(group as usize) else { continue };
                     match known {
@@ -199,7 +200,10 @@ impl Port<'_> {
         let hands = |p: &Port| p.prop.map_or("empty hands".into(), |p| format!("a box of {:?} m", p.size));
         let there = format!("the {} of role {} of kind {}", other.end, other.role, other.kind.name);
         let (expected, found) = (hands(other), hands(self));
-        format!("role {}: its {} in pose group {group}: expected {expected} as at {there}, found {found}", self.role, self.end)
+        format!(
+            "role {}: its {} in pose group {group}: expected {expected} as at {there}, found {found}",
+            self.role, self.end
+        )
     }
 }
 

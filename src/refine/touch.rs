@@ -9,9 +9,9 @@ use glam::{Quat, Vec3};
 use super::arm::{fade, move_hand};
 use super::carry::ground_at;
 use super::{Body, Segment};
+use crate::motion::BodyPart;
 use crate::motion::contacts::palm;
 use crate::motion::joint::{HEAD, LEFT_HAND, RIGHT_HAND, SPINE2};
-use crate::motion::BodyPart;
 use crate::patch::{Contact, Touch};
 
 /// Frames over which a hand begins and ceases to be led.

@@ -16,7 +16,7 @@ use crate::motion::take::{
 pub(super) const BOX: [f32; 3] = [0.36, 0.26, 0.30];
 /// Where its middle is, seen from the middle between the palms: up and ahead (m). Palms are on the near half, so that
 /// two people have room for their hands.
-pub(super) const GRIP: [f32; 2] = [0.02, 0.05];
+pub(super) const GRIP: [f32; 2] = [-0.03, 0.05];
 
 /// A take in the making. Frames are at 30 per second.
 pub(super) struct Scene {

@@ -126,7 +126,8 @@ impl Crowd {
         let read = |(i, c)| arrays.character(i, c);
         let characters = header.characters.into_iter().enumerate().map(read).collect::<Result<Vec<_>>>()?;
         let props = props(header.props, &reader)?;
-        let crowd = Self { seed: header.seed, domain: header.domain, set, instances: header.instances, characters, props };
+        let crowd =
+            Self { seed: header.seed, domain: header.domain, set, instances: header.instances, characters, props };
         crowd.check_references()?;
         Ok(crowd)
     }

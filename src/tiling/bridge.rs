@@ -65,8 +65,10 @@ const MAX_TURN: f32 = std::f32::consts::FRAC_PI_3;
 const WALL_ROOM: f32 = 0.3;
 /// Steps sideways and back cost this much more than walking ahead: people turn to where they go.
 const ASKEW_WEIGHT: f32 = 0.2;
+/// Cost factor of taking up and putting down.
+const LIFT_WEIGHT: f32 = 0.85;
 /// Cost of a box that lies about for a second.
-const CLUTTER_WEIGHT: f32 = 0.1;
+const CLUTTER_WEIGHT: f32 = 0.05;
 /// Below this mean speed a patch counts as standing, m/s.
 const STANDING_SPEED: f32 = 0.25;
 
@@ -216,7 +218,8 @@ impl Bridge {
             if !inside || self.seen.contains(&key(&at)) {
                 continue;
             }
-            let cost = cost + step_cost(step, taste) * rng.random_range(0.85..1.2) + clutter(view, step, from.tick);
+            let cost =
+                cost + step_cost(view, step, taste) * rng.random_range(0.85..1.2) + clutter(view, step, from.tick);
             if let Some(left) = cost_left(&at, goal) {
                 let boxed = boxed || view.library.roles[step.role as usize].leaves_box();
                 self.push(Node { at, cost, parent: node, role: step.role, boxed, piece: None }, cost + left);
@@ -317,8 +320,15 @@ fn split(view: View, closing: &Closing, path: &MotionPath, begin: i32, end: i32)
     ])
 }
 
-fn step_cost(step: &Move, taste: Taste) -> f32 {
-    let factor = if step.speed < STANDING_SPEED { taste.calm } else { 1.0 + ASKEW_WEIGHT * step.askew };
+fn step_cost(view: View, step: &Move, taste: Taste) -> f32 {
+    let lifts = view.library.roles[step.role as usize].leaves_box();
+    let factor = if lifts {
+        LIFT_WEIGHT
+    } else if step.speed < STANDING_SPEED {
+        taste.calm
+    } else {
+        1.0 + ASKEW_WEIGHT * step.askew
+    };
     step.ticks as f32 / FPS * factor
 }
 

@@ -25,6 +25,10 @@ use crate::{Error, Result};
 
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 4000;
+/// Every so many people one is wished for who begins with a box in the hands, for so many tries.
+const LADEN_EVERY: usize = 6;
+const LADEN_PATIENCE: usize = 60;
+const LADEN_EXPANSIONS: usize = 300;
 /// Failed tries in a row after which no further patch of several people is wished for.
 const ENRICH_PATIENCE: usize = 60_000;
 /// The share is aimed at a little higher than wished for: mending may cost a patch or two.
@@ -180,8 +184,12 @@ fn state(tracks: &Tracks, phase: Phase) -> Progress {
 
 fn seed(tracks: &mut Tracks, wish: usize, taste: Taste, clock: &mut Clock, rng: &mut ChaCha8Rng) {
     let mut failures = 0;
+    let boxes = tracks.library.laden.contains(&true);
     while tracks.tracks.len() < wish && failures < SEED_PATIENCE && clock.goes_on(|| state(tracks, Phase::Seed)) {
-        failures = if seed_person(tracks, taste, rng) { 0 } else { failures + 1 };
+        let laden = boxes && tracks.tracks.len() % LADEN_EVERY == 0 && failures < LADEN_PATIENCE;
+        // Fewer patches go on with a box in the hands: the search needs longer.
+        let taste = if laden { Taste { expansions: LADEN_EXPANSIONS, ..taste } } else { taste };
+        failures = if seed_person(tracks, laden, taste, rng) { 0 } else { failures + 1 };
     }
 }
 
@@ -239,12 +247,7 @@ fn finish(
 }
 
 /// Tests final bodies and bridges anew until none interpenetrate; the performance and the number of faults left.
-fn mend_all(
-    tracks: &mut Tracks,
-    taste: Taste,
-    clock: &mut Clock,
-    rng: &mut ChaCha8Rng,
-) -> (Performance, usize) {
+fn mend_all(tracks: &mut Tracks, taste: Taste, clock: &mut Clock, rng: &mut ChaCha8Rng) -> (Performance, usize) {
     let mut round = 0;
     loop {
         let played = perform(tracks.chains());

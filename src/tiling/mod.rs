@@ -14,6 +14,7 @@ mod mend;
 mod occupancy;
 mod outcome;
 mod paper;
+mod piece;
 mod scene;
 mod seed;
 mod tracks;

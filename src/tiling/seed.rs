@@ -5,16 +5,15 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::bridge::{Goal, Port, Taste};
+use super::library::{Library, Move};
 use super::tracks::{Tracks, Undo};
 use crate::geom::Ground;
 
-/// Tries to add a person at a random place of the domain, present over the whole time.
-pub(super) fn seed_person(tracks: &mut Tracks, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
+/// Tries to add a person at a random place of the domain, present over the whole time; one who begins with a box in the
+/// hands, or by taking one up, if so wished.
+pub(super) fn seed_person(tracks: &mut Tracks, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
     let domain = tracks.domain;
-    let role = {
-        let single: Vec<u32> = tracks.library.forward.iter().flatten().map(|m| m.role).collect();
-        single[rng.random_range(0..single.len())]
-    };
+    let role = first_role(tracks.library, laden, rng);
     let place = Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
     let heading = rng.random_range(-std::f32::consts::PI..std::f32::consts::PI);
     let lead = rng.random_range(0..tracks.library.roles[role as usize].ticks);
@@ -42,4 +41,15 @@ pub(super) fn seed_person(tracks: &mut Tracks, taste: Taste, rng: &mut ChaCha8Rn
     tracks.push_track(pieces);
     tracks.commit(undo);
     true
+}
+
+/// Any single-person role; of those who have or get a box in the hands half are to take it up, if there are such.
+fn first_role(library: &Library, laden: bool, rng: &mut ChaCha8Rng) -> u32 {
+    let lifts = |m: &&Move| library.roles[m.role as usize].rests[0].is_some() && library.laden[m.group as usize];
+    let all = || library.forward.iter().flatten();
+    let lifting = laden && rng.random_range(0..2) == 0 && all().any(|m| lifts(&m));
+    let from = library.forward.iter().zip(&library.laden).filter(|(_, group)| lifting || !laden || **group);
+    let moves = from.flat_map(|(moves, _)| moves).filter(|m| !lifting || lifts(m));
+    let roles: Vec<u32> = moves.map(|m| m.role).collect();
+    roles[rng.random_range(0..roles.len())]
 }

@@ -142,7 +142,12 @@ fn pass_box(coming: Coming) -> Scene {
 /// The palm on the box between the two; giver's and taker's hands just miss each other.
 fn between(side: Foot, below: f32) -> Grip {
     let s = if side == Left { 1.0 } else { -1.0 };
-    grip(Relative::Path, [s * 0.5 * BOX[0], 1.06 - below, 0.5 * APART - GRIP[1]], [s * -0.06, 0.02, 1.0], [-s, 0.0, 0.0])
+    grip(
+        Relative::Path,
+        [s * 0.5 * BOX[0], 1.06 - below, 0.5 * APART - GRIP[1]],
+        [s * -0.06, 0.02, 1.0],
+        [-s, 0.0, 0.0],
+    )
 }
 
 fn hand_over(a: &mut Actor, begun: f32, give: f32, taken: f32) {
