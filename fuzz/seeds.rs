@@ -1,5 +1,7 @@
 //! Writes small seeds for every fuzz target: `cargo run --release --example fuzz_seeds [folder]`.
 
+#[path = "seeds/avatar.rs"]
+mod avatar;
 #[path = "seeds/fbx.rs"]
 mod fbx;
 #[path = "../tests/fixture/mod.rs"]
@@ -14,7 +16,6 @@ use crowdquilt::export::clip_glb;
 use crowdquilt::motion::{Clip, bvh, canonical};
 use crowdquilt::samples;
 use glam::{Quat, Vec3};
-use serde_json::{Value, json};
 
 /// Two joints, and two people of them who move.
 const ASF: &str = ":version 1.10\n:units\n mass 1.0\n length 0.45\n angle deg\n:root\n order TX TY TZ RX RY RZ\n axis XYZ\n \
@@ -45,7 +46,7 @@ fn main() -> std::io::Result<()> {
     write("patches", "small.patches", &small_set().to_bytes())?;
     write("scene", "plaza.toml", include_bytes!("../examples/plaza.toml"))?;
     write("rig", "small.toml", b"hips = \"Root_M\"\nleft_up_leg = \"Hip_L\"\n")?;
-    write("avatar", "small.glb", &avatar(&glb))?;
+    write("avatar", "small.glb", &avatar::character(&glb))?;
     for take in samples::generate(1).iter().take(3) {
         write("take", &format!("{}.json", take.file.name), &serde_json::to_vec(&take.file)?)?;
     }
@@ -71,39 +72,4 @@ fn small_set() -> crowdquilt::patch::PatchSet {
     let mut set = fixture::patch_set();
     set.kinds.truncate(1);
     set
-}
-
-/// The clip's skeleton with a skin of one triangle.
-fn avatar(clip: &[u8]) -> Vec<u8> {
-    let mut file = glb_file::Glb::open(clip);
-    let begin = file.binary.len();
-    [0.0f32, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.1, 0.0].iter().for_each(|v| file.binary.extend(v.to_le_bytes()));
-    file.binary.extend([0u8; 12]);
-    [1.0f32, 0.0, 0.0, 0.0].repeat(3).iter().for_each(|v| file.binary.extend(v.to_le_bytes()));
-    let end = file.binary.len();
-    let json = &mut file.json;
-    let count = |json: &Value, of: &str| json[of].as_array().map_or(0, Vec::len);
-    let (view, accessor, node) = (count(json, "bufferViews"), count(json, "accessors"), count(json, "nodes"));
-    let mut add = |to: &str, value: Value| match json[to].as_array_mut() {
-        Some(list) => list.push(value),
-        None => json[to] = json!([value]),
-    };
-    for (from, length) in [(begin, 36), (begin + 36, 12), (begin + 48, 48)] {
-        add("bufferViews", json!({ "buffer": 0, "byteOffset": from, "byteLength": length }));
-    }
-    let (low, high) = (json!([0, 0, 0]), json!([0.1, 0.1, 0]));
-    let places =
-        json!({ "bufferView": view, "componentType": 5126, "count": 3, "type": "VEC3", "min": low, "max": high });
-    add("accessors", places);
-    add("accessors", json!({ "bufferView": view + 1, "componentType": 5121, "count": 3, "type": "VEC4" }));
-    add("accessors", json!({ "bufferView": view + 2, "componentType": 5126, "count": 3, "type": "VEC4" }));
-    let attributes = json!({ "POSITION": accessor, "JOINTS_0": accessor + 1, "WEIGHTS_0": accessor + 2 });
-    add("meshes", json!({ "primitives": [{ "attributes": attributes }] }));
-    add("skins", json!({ "joints": (0..canonical().joints.len()).collect::<Vec<_>>() }));
-    add("nodes", json!({ "mesh": 0, "skin": 0 }));
-    json["scenes"][0]["nodes"].as_array_mut().expect("a scene").push(json!(node));
-    json["buffers"][0]["byteLength"] = json!(end);
-    let bytes = glb_file::write(&file.json, &file.binary);
-    crowdquilt::export::Avatar::open(&bytes).expect("a seed is a whole character");
-    bytes
 }

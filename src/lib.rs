@@ -9,6 +9,7 @@ pub mod deform;
 pub mod error;
 pub mod export;
 pub mod geom;
+mod gltf;
 pub mod motion;
 pub mod patch;
 pub mod refine;

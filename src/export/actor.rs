@@ -24,11 +24,14 @@ pub(super) struct Bone {
     pub scale: Vec3,
     /// A stiff part that hangs from it: eyes, glasses.
     pub mesh: Option<Index<Mesh>>,
+    /// Weights of the stiff part's morph targets, if they are not the mesh's own.
+    pub weights: Option<Vec<f32>>,
 }
 
 impl Bone {
     pub(super) fn new(name: &str, translation: Vec3) -> Self {
-        Self { name: name.into(), parent: None, translation, rotation: Quat::IDENTITY, scale: Vec3::ONE, mesh: None }
+        let (rotation, scale) = (Quat::IDENTITY, Vec3::ONE);
+        Self { name: name.into(), parent: None, translation, rotation, scale, mesh: None, weights: None }
     }
 }
 
@@ -40,6 +43,8 @@ pub(super) struct Dress {
     pub bind: Option<Index<Accessor>>,
     /// The bones they are for.
     pub joints: Vec<usize>,
+    /// Weights of the mesh's morph targets, if they are not its own.
+    pub weights: Option<Vec<f32>>,
 }
 
 /// Keys of an actor, one per frame of the person's motion.
@@ -106,7 +111,7 @@ impl Writer {
             let skin = self.root.push(Skin {
                 joints: dress.joints.iter().map(|&j| nodes[j]).collect(),
                 inverse_bind_matrices: dress.bind,
-                skeleton: Some(nodes[keys.root]).filter(|_| dress.joints.contains(&keys.root)),
+                skeleton: Some(nodes[keys.root]).filter(|_| dress.joints.iter().all(|&j| hangs(bones, j, keys.root))),
                 name: Some(format!("person_{index}{suffix}")),
                 extensions: None,
                 extras: Default::default(),
@@ -115,6 +120,7 @@ impl Writer {
                 name: Some(format!("person_{index}_body{suffix}")),
                 mesh: Some(dress.mesh),
                 skin: Some(skin),
+                weights: dress.weights.clone(),
                 ..Default::default()
             });
             self.scene.push(body);
@@ -175,6 +181,7 @@ impl Writer {
                 rotation: Some(UnitQuaternion(turn.normalize().to_array())),
                 scale: (bone.scale != Vec3::ONE).then_some(bone.scale.to_array()),
                 mesh: bone.mesh,
+                weights: bone.weights.clone(),
                 ..Default::default()
             });
         }
@@ -270,6 +277,11 @@ impl Writer {
         });
         assemble(&root, binary)
     }
+}
+
+/// Whether a bone is `top` or below it.
+fn hangs(bones: &[Bone], bone: usize, top: usize) -> bool {
+    std::iter::successors(Some(bone), |&b| bones[b].parent).any(|b| b == top)
 }
 
 fn secs(frame: u32) -> f32 {

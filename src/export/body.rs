@@ -63,7 +63,7 @@ impl Wardrobe {
     /// Mesh and skin of a person.
     pub(super) fn dress(&self, person: usize, build: usize) -> Dress {
         let (mesh, bind) = (self.meshes[&(build, look(person))], self.binds[build]);
-        Dress { mesh, bind: Some(bind), joints: (0..JOINT_COUNT).collect() }
+        Dress { mesh, bind: Some(bind), joints: (0..JOINT_COUNT).collect(), weights: None }
     }
 
     fn sew(&mut self, root: &mut Root, build: usize, look: Look) {

@@ -29,6 +29,15 @@ impl Phase {
             Self::Stand => "stand",
         }
     }
+
+    /// The phase seen in a mirror.
+    pub fn mirrored(self) -> Self {
+        match self {
+            Self::WalkLeft => Self::WalkRight,
+            Self::WalkRight => Self::WalkLeft,
+            Self::Stand => Self::Stand,
+        }
+    }
 }
 
 /// A frame at which a phase is reached.

@@ -207,6 +207,9 @@ pub struct TakeFile {
     pub version: u32,
     /// Name of the take.
     pub name: String,
+    /// What it shows, in words; they become labels of patches that are found in it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
     /// The people.
     pub people: Vec<TakePerson>,
     /// Foot plants; detected where the list is empty.

@@ -1,7 +1,6 @@
 //! Cuts patch kinds out of takes, where their take files say: patches composed by hand, as many of the paper's are.
 //!
-//! Steps: take files are read; captures imported and retargeted, all people of a take with one scale; every entry
-//! of `patches` becomes a kind on its own clock and in its own frame; mirrored copies are added.
+//! Every entry of `patches` becomes a kind on its own clock and in its own frame; mirrored copies are added.
 
 use std::path::{Path, PathBuf};
 
@@ -32,22 +31,30 @@ impl Default for CutOptions {
     }
 }
 
-/// Cuts the patches of all take files, in their order, into one set.
+/// A take and its people's motion.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// The file that speaks of it, for messages.
+    pub origin: PathBuf,
+    /// What is to be cut.
+    pub take: TakeFile,
+    /// See [`load_take`].
+    pub motions: Vec<Motion>,
+}
+
+/// Cuts the patches of all takes, in their order, into one set.
 ///
 /// # Errors
-/// A take file or capture is bad (names the file and the line or field); a role outside its capture or without a
-/// port; two patches of one name.
-pub fn cut(takes: &[PathBuf], options: &CutOptions) -> Result<PatchSet> {
+/// A role outside its capture or without a port; two patches of one name.
+pub fn cut(sources: &[Source], options: &CutOptions) -> Result<PatchSet> {
     let mut set = PatchSet::default();
-    for path in takes {
-        let take = TakeFile::load(path)?;
-        let motions = load_take(path, &take, options)?;
+    for Source { origin, take, motions } in sources {
         for patch in &take.patches {
-            let cutter = Cutter { take: &take, motions: &motions, patch, options };
-            let kind = cutter.kind(&mut set.groups).map_err(|e| e.in_file(path))?;
+            let cutter = Cutter { take, motions, patch, options };
+            let kind = cutter.kind(&mut set.groups).map_err(|e| e.in_file(origin))?;
             if set.kinds.iter().any(|k| k.name == kind.name) {
                 let problem = "expected a new name, found a patch of this name before";
-                return Err(Error::invalid(path.display().to_string(), format!("patch {}", kind.name), problem));
+                return Err(Error::invalid(origin.display().to_string(), format!("patch {}", kind.name), problem));
             }
             set.kinds.push(kind);
         }
@@ -66,37 +73,6 @@ pub fn cut(takes: &[PathBuf], options: &CutOptions) -> Result<PatchSet> {
 fn round(set: &mut PatchSet) {
     for fragment in set.kinds.iter_mut().flat_map(|k| &mut k.fragments) {
         fragment.motion.rotations.iter_mut().for_each(|q| *q = filed_rotation(*q));
-    }
-}
-
-/// Cuts all take files (`*.take.json`) of a folder, sorted by name; captures are looked up in `captures` if given.
-///
-/// # Errors
-/// As [`cut`]; the folder cannot be read or has no take file.
-pub fn cut_folder(folder: &Path, captures: Option<&Path>) -> Result<PatchSet> {
-    let entries = std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))?;
-    let mut takes = Vec::new();
-    for entry in entries {
-        let path = entry.map_err(|e| Error::io(folder, e))?.path();
-        if path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(".take.json")) {
-            takes.push(path);
-        }
-    }
-    if takes.is_empty() {
-        let problem = "expected take files (*.take.json), found none";
-        return Err(Error::invalid(folder.display().to_string(), "folder", problem));
-    }
-    takes.sort();
-    cut(&takes, &CutOptions { captures: captures.map(Path::to_owned), ..Default::default() })
-}
-
-impl PatchSet {
-    /// The set cut from a folder of take files with their captures beside them. See [`cut_folder`].
-    ///
-    /// # Errors
-    /// As [`cut_folder`].
-    pub fn from_folder(folder: &Path) -> Result<Self> {
-        cut_folder(folder, None)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{CutOptions, PatchSet, cut, cut_folder};
+use super::{MakeOptions, PatchSet, cut_folder, make};
 use crate::motion::take::TakeFile;
 use crate::motion::{BodyPart, Foot, canonical};
 
@@ -73,7 +73,7 @@ const TAKE: &str = r#"{
 fn error(name: &str, take: &str) -> String {
     let folder = Folder::new(name);
     let path = folder.write(take);
-    cut(&[path], &CutOptions::default()).expect_err("must be refused").to_string()
+    make(&path, &MakeOptions::default()).expect_err("must be refused").to_string()
 }
 
 fn refused(name: &str, from: &str, to: &str, says: &[&str]) {
@@ -172,7 +172,7 @@ fn a_bad_capture_is_named() {
     let folder = Folder::new("capture");
     let path = folder.write(TAKE);
     std::fs::write(folder.0.join("b.bvh"), walker(0.0).replace("left_hand", "thing")).unwrap();
-    let found = cut(&[path], &CutOptions::default()).unwrap_err().to_string();
+    let found = make(&path, &MakeOptions::default()).unwrap_err().to_string();
     assert!(found.contains("capture b: skeleton") && found.contains("left_hand"), "{found}");
 }
 

@@ -1,5 +1,6 @@
 //! Motion patches: fragments of one or more people's motion with ports, contacts and labels, and the set of them.
 
+pub mod annotate;
 pub mod boundaries;
 pub mod boundary;
 mod cut;
@@ -8,6 +9,7 @@ mod cut_props;
 mod cut_tests;
 pub mod episode;
 mod file;
+mod make;
 mod mirror;
 mod prop;
 pub mod propose;
@@ -17,7 +19,8 @@ mod speed;
 pub(crate) use file::{filed_rotation, pack_rotation, unpack_rotation};
 pub(crate) use speed::{fastest_turns, turn_between};
 
-pub use cut::{CutOptions, cut, cut_folder, load_take};
+pub use cut::{CutOptions, Source, cut, load_take};
+pub use make::{Made, MakeOptions, cut_folder, make};
 pub use mirror::mirrored;
 pub use prop::{PatchProp, PropHold};
 pub use set::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};

@@ -85,6 +85,7 @@ impl Scene {
             format: "crowdquilt-take".into(),
             version: 1,
             name: self.name,
+            description: String::new(),
             people,
             plants: all_plants,
             contacts: self.contacts,

@@ -43,6 +43,12 @@ def test_no_error_and_no_warning(name: str, people: int, last: int):
     assert abs(report["three"]["duration"] - last / 30) < 1e-5
 
 
+def test_a_characters_outfit_is_whole():
+    code, report = validate(TMP / "dressed.glb")
+    assert code == 0 and report["errors"] == 0 and report["warnings"] == 0, report
+    assert report["info"]["hasMorphTargets"] and report["info"]["hasTextures"] and report["info"]["maxUVs"] == 2
+
+
 def test_a_truncated_file_fails(tmp_path: Path):
     whole = TMP / "fixture.glb"
     if not whole.exists():

@@ -30,6 +30,7 @@ impl Glb {
         let at = |v: &Value| v["byteOffset"].as_u64().unwrap_or(0) as usize;
         let width = match accessor["type"].as_str().unwrap() {
             "SCALAR" => 1,
+            "VEC2" => 2,
             "VEC3" => 3,
             "MAT4" => 16,
             _ => 4,
@@ -53,6 +54,7 @@ impl Glb {
     }
 
     /// Times and values of the channel that drives `path` of the node `name`.
+    #[allow(dead_code)]
     pub fn channel(&self, name: &str, path: &str) -> Option<(Vec<f32>, Vec<f32>, String)> {
         let animation = &self.json["animations"][0];
         let node = self.node(name);

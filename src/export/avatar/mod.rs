@@ -1,11 +1,20 @@
 //! Somebody's own character: a skinned humanoid from a GLB file, which plays people of a crowd.
 //!
 //! The joints are told by [`match_rig`], the rest pose may be a T-pose, an A-pose or anything upright, of any size and
-//! facing anywhere. Meshes, skins, materials and pictures come along as they are; the character's own animations do not.
+//! facing anywhere. Meshes, skins, materials and pictures come along; the character's own animations do not.
+//!
+//! The file's nodes are looked at first ([`nodes`]), then everything that is seen is followed from them
+//! ([`tailor`]): it is checked and kept in the form ([`outfit`]) in which it is written ([`graft`]).
 
 mod graft;
+mod material;
+mod nodes;
+mod outfit;
+mod picture;
 mod play;
-mod read;
+mod sole;
+mod tailor;
+mod vertices;
 
 use std::path::Path;
 
@@ -13,18 +22,20 @@ use glam::{Quat, Vec3};
 use gltf_json::Root;
 
 use super::actor::{Bone, Dress};
+use crate::gltf::{Data, Tables, bad, open, version};
 use crate::motion::JOINT_COUNT;
 use crate::motion::retarget::{RestRig, match_rig, rest_turns};
 use crate::{Error, Result};
-use read::Parts;
+use nodes::Parts;
+use outfit::Outfit;
+
+/// Lengths that legs may have in the file's unit, be it a micrometre or a thousand kilometres.
+const LEGS: std::ops::RangeInclusive<f32> = 1e-6..=1e6;
 
 /// A character made ready to play people.
 #[derive(Debug)]
 pub struct Avatar {
-    /// The file's JSON and binary chunk.
-    json: Root,
-    data: Vec<u8>,
-    parts: Parts,
+    outfit: Outfit,
     /// Its bones; the first one stands for the character's size.
     bones: Vec<Bone>,
     /// Global rest transforms of the bones at size 1.
@@ -47,10 +58,6 @@ pub(super) struct Graft {
     bones: Vec<Bone>,
 }
 
-pub(super) fn bad(place: impl Into<String>, problem: impl Into<String>) -> Error {
-    Error::invalid("character", place, problem)
-}
-
 impl Avatar {
     /// Reads a character from a `.glb` file.
     ///
@@ -67,19 +74,29 @@ impl Avatar {
     /// Not a whole GLB with its own data, no skinned mesh, joints that are scaled unevenly, or no humanoid: names the
     /// joints that are missing.
     pub fn open(bytes: &[u8]) -> Result<Self> {
-        let (json, data) = read::open(bytes)?;
+        if !bytes.starts_with(b"glTF") {
+            return Err(bad("byte 0", "expected a binary glTF file (.glb), found something else"));
+        }
+        let (json, binary) = open::<Root>(bytes)?;
+        version(&json.asset)?;
+        if !json.extensions_required.is_empty() {
+            let names = json.extensions_required.join(", ");
+            return Err(bad("extensionsRequired", format!("expected plain glTF 2.0, found {names}; export without")));
+        }
         let parts = Parts::of(&json)?;
         let bones = parts.bones(&json)?;
-        let rest = read::globals(&bones);
-        let names = parts.names(&json);
+        let rest: Vec<(Vec3, Quat)> =
+            nodes::frames(&bones).iter().map(|(f, turn)| (f.translation.into(), *turn)).collect();
         // Bone 0 is the size, which is no joint of theirs.
         let places: Vec<Vec3> = rest[1..].iter().map(|r| r.0).collect();
         let parents = bones[1..].iter().map(|b| b.parent.and_then(|p| p.checked_sub(1))).collect();
-        let rig = RestRig::new(names, parents, places)?;
+        let rig = RestRig::new(parts.names(&json), parents, places)?;
         let found = match_rig(&rig)?;
         let turns = rest_turns(&rig, &found);
         let plays = found.joints.map(|joint| joint.map(|j| j + 1));
-        let mut avatar = Self { json, data, parts, bones, rest, plays, turns, leg: 0.0, ankle: 0.0 };
+        let tables = Tables { accessors: &json.accessors, views: &json.buffer_views, buffers: &json.buffers };
+        let outfit = tailor::dress(&json, Data::new(tables, binary, bytes.len(), None), &parts)?;
+        let mut avatar = Self { outfit, bones, rest, plays, turns, leg: 0.0, ankle: 0.0 };
         avatar.measure()?;
         Ok(avatar)
     }
@@ -91,12 +108,15 @@ impl Avatar {
             at(up).distance(at(low)) + at(low).distance(at(foot))
         });
         self.leg = 0.5 * (leg[0] + leg[1]);
-        if !(self.leg > 1e-6 && self.leg.is_finite()) {
+        if !LEGS.contains(&self.leg) {
             return Err(bad("skeleton", format!("expected legs with a length, found {}", self.leg)));
         }
         let up = self.turns[0] * Vec3::Y;
         let ankles = play::LEGS.map(|[_, _, foot]| self.plays[foot].map_or(f32::NAN, |b| self.rest[b].0.dot(up)));
-        let sole = read::lowest(&self.json, &self.data, &self.parts, &self.bones, up)?;
+        let sole = sole::lowest(&self.outfit, &self.bones, up);
+        if !sole.is_finite() {
+            return Err(bad("meshes", format!("expected vertices in the scene, found some at {sole}")));
+        }
         self.ankle = (0.5 * (ankles[0] + ankles[1]) - sole).clamp(0.0, 0.5 * self.leg);
         Ok(())
     }

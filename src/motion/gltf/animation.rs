@@ -9,9 +9,8 @@ use gltf_json::accessor::Type;
 use gltf_json::animation::{Interpolation, Property};
 use gltf_json::validation::Checked;
 
-use super::container::bad;
-use super::data::Data;
 use crate::Result;
+use crate::gltf::{Data, Numbers, bad, find};
 use crate::motion::nodes::Local;
 
 /// The keys of one property of one node.
@@ -43,17 +42,17 @@ pub(super) fn tracks(
         if path == Property::MorphTargetWeights || !wanted(node) {
             continue;
         }
-        let place = || format!("animation '{}' channel {i}", animation.name.as_deref().unwrap_or_default());
-        let sampler = animation.samplers.get(channel.sampler.value());
-        let sampler = sampler.ok_or_else(|| bad(place(), "expected a sampler, found none"))?;
+        let place = format!("animation '{}' channel {i}", animation.name.as_deref().unwrap_or_default());
+        // Samplers are numbered within their animation.
+        let sampler = find(&animation.samplers, channel.sampler, "samplers", &place)?;
         let Checked::Valid(interpolation) = sampler.interpolation else {
-            return Err(bad(place(), "expected LINEAR, STEP or CUBICSPLINE, found another interpolation"));
+            return Err(bad(place, "expected LINEAR, STEP or CUBICSPLINE, found another interpolation"));
         };
         let (kind, width) = if path == Property::Rotation { (Type::Vec4, 4) } else { (Type::Vec3, 3) };
-        let times = data.floats(sampler.input, &[Type::Scalar])?;
-        let values = data.floats(sampler.output, &[kind])?;
+        let times = data.floats(sampler.input, &[Type::Scalar], Numbers::Any, &place)?.values;
+        let values = data.floats(sampler.output, &[kind], Numbers::Any, &place)?.values;
         let keys = Keys { times, values, interpolation, width };
-        keys.check().map_err(|problem| bad(place(), problem))?;
+        keys.check().map_err(|problem| bad(place, problem))?;
         let node = tracks.entry(node).or_default();
         match path {
             Property::Translation => node.translation = Some(keys),

@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use glam::{DAffine3, DMat4, DQuat, DVec3, DVec4, Mat4};
-use gltf_json::Animation;
 use gltf_json::accessor::Type;
 use gltf_json::animation::{Interpolation, Property};
+use gltf_json::buffer::View;
 use gltf_json::validation::Checked;
+use gltf_json::{Accessor, Animation, Asset, Buffer, Index, Skin};
 
 use super::animation::{Keys, Tracks, tracks, turn};
-use super::container::{Document, bad, open};
-use super::data::Data;
 use crate::Result;
+use crate::gltf::{Data, Numbers, Tables, bad, find, open, version};
 use crate::motion::import::Capture;
 use crate::motion::nodes::{self, Figure, Local, Node, Timing, Tree};
 use crate::motion::rate;
@@ -28,6 +28,43 @@ pub(crate) struct Source<'a> {
     pub fps: Option<f32>,
 }
 
+/// What is read of the JSON; meshes, materials and all else may be as they like.
+#[derive(Debug, serde::Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Document {
+    asset: Asset,
+    #[serde(default)]
+    accessors: Vec<Accessor>,
+    #[serde(default)]
+    animations: Vec<Animation>,
+    #[serde(default)]
+    buffers: Vec<Buffer>,
+    #[serde(default)]
+    buffer_views: Vec<View>,
+    #[serde(default)]
+    nodes: Vec<gltf_json::Node>,
+    #[serde(default)]
+    skins: Vec<Skin>,
+    #[serde(default)]
+    extensions_required: Vec<String>,
+}
+
+impl Document {
+    /// # Errors
+    /// Another version, or numbers packed in a way that is not read.
+    fn supported(&self) -> Result<()> {
+        version(&self.asset)?;
+        match self.extensions_required.iter().find(|e| e.ends_with("meshopt_compression")) {
+            Some(packed) => Err(bad("extensionsRequired", format!("expected plain buffers, found {packed}"))),
+            None => Ok(()),
+        }
+    }
+
+    fn tables(&self) -> Tables<'_> {
+        Tables { accessors: &self.accessors, views: &self.buffer_views, buffers: &self.buffers }
+    }
+}
+
 /// Reads all characters that an animation moves, on one clock, in metres.
 ///
 /// Poses are sampled at the rate of the densest keys, at most 240 per second. Times at which a character is scaled to
@@ -36,8 +73,9 @@ pub(crate) struct Source<'a> {
 /// # Errors
 /// One message with the place: a chunk, accessor, channel or node.
 pub(crate) fn read(bytes: &[u8], source: Source) -> Result<Capture> {
-    let (root, binary) = open(bytes)?;
-    let mut data = Data::new(&root, binary, bytes.len(), source.folder);
+    let (root, binary) = open::<Document>(bytes)?;
+    root.supported()?;
+    let mut data = Data::new(root.tables(), binary, bytes.len(), source.folder);
     let animations = chosen(&root, source.animation)?;
     let tree = tree(&root, &mut data, &animations)?;
     let figures = nodes::figures(&tree);
@@ -46,7 +84,7 @@ pub(crate) fn read(bytes: &[u8], source: Source) -> Result<Capture> {
     }
     let tracks = figures.iter().map(|figure| moving(&mut data, &animations, figure)).collect::<Result<Vec<_>>>()?;
     let timing = timing(&tracks, source.fps);
-    timing.check(&figures, data.bytes)?;
+    timing.check(&figures, data.bytes())?;
     let clip = |(figure, tracks): (&Figure, &BTreeMap<usize, Tracks>)| {
         // Keys that are meant to be at a frame are a little beside it: times are in single precision, rates rounded.
         let slack = 0.02 / timing.fps;
@@ -101,20 +139,17 @@ fn timing(tracks: &[BTreeMap<usize, Tracks>], fps: Option<f32>) -> Timing {
 fn tree(root: &Document, data: &mut Data, animations: &[&Animation]) -> Result<Tree> {
     let mut nodes: Vec<Node> = root.nodes.iter().map(node).collect();
     for (i, node) in root.nodes.iter().enumerate() {
-        for child in node.children.iter().flatten().map(|c| c.value()) {
-            let found = nodes.get_mut(child);
-            let found = found.ok_or_else(|| bad(format!("node {i}"), format!("expected node {child}, found none")))?;
-            if found.parent.replace(i).is_some() {
+        for &child in node.children.iter().flatten() {
+            find(&root.nodes, child, "nodes", &format!("node {i}"))?;
+            if nodes[child.value()].parent.replace(i).is_some() {
                 return Err(bad(format!("node {child}"), "expected one parent, found two"));
             }
         }
     }
     for target in animations.iter().flat_map(|a| &a.channels).map(|c| &c.target) {
         if target.path != Checked::Valid(Property::MorphTargetWeights) {
-            let found = nodes.get_mut(target.node.value());
-            found
-                .ok_or_else(|| bad("animations", format!("expected node {}, found none", target.node.value())))?
-                .animated = true;
+            find(&root.nodes, target.node, "nodes", "animations")?;
+            nodes[target.node.value()].animated = true;
         }
     }
     let mut tree = Tree::new(nodes)?;
@@ -165,13 +200,13 @@ fn tip(node: &gltf_json::Node) -> Option<DVec3> {
 fn skins(root: &Document, data: &mut Data, tree: &mut Tree) -> Result<()> {
     let rest = tree.rest_transforms();
     for (i, skin) in root.skins.iter().enumerate() {
-        let joints: Vec<usize> = skin.joints.iter().map(|j| j.value()).collect();
-        if let Some(lost) = joints.iter().find(|&&j| j >= tree.nodes.len()) {
-            return Err(bad(format!("skin {i}"), format!("expected node {lost}, found none")));
-        }
+        let place = format!("skin {i}");
+        skin.joints.iter().try_for_each(|&j| find(&root.nodes, j, "nodes", &place).map(drop))?;
+        let joints: Vec<usize> = skin.joints.iter().map(Index::value).collect();
         let mesh = root.nodes.iter().position(|n| n.skin.is_some_and(|s| s.value() == i));
-        let matrices = skin.inverse_bind_matrices.map(|m| data.floats(m, &[Type::Mat4])).transpose()?;
-        let inverse: Vec<DMat4> = matrices.iter().flat_map(|m| m.chunks_exact(16)).map(matrix).collect();
+        let matrices = skin.inverse_bind_matrices.map(|m| data.floats(m, &[Type::Mat4], Numbers::Floats, &place));
+        let matrices = matrices.transpose()?;
+        let inverse: Vec<DMat4> = matrices.iter().flat_map(|m| m.values.chunks_exact(16)).map(matrix).collect();
         let bind = bind(&joints, &inverse, &rest, mesh);
         for (at, &joint) in joints.iter().enumerate() {
             let node = &mut tree.nodes[joint];

@@ -295,16 +295,25 @@ fn faults_name_their_place() {
     with("/asset/version", json!("1.0"), "asset: expected version 2, found '1.0'");
     with("/animations", json!([]), "expected an animation, found none at all");
     with("/animations/0/channels", json!([]), "expected an animation that moves a tree of nodes");
-    with("/animations/0/channels/0/sampler", json!(7), "animation 'walk' channel 0: expected a sampler, found none");
-    with("/animations/0/channels/0/target/node", json!(7), "expected node 7, found none");
-    with("/animations/0/samplers/0/input", json!(1), "accessor 1: expected [Scalar]");
-    with("/animations/0/samplers/0/output", json!(9), "accessor 9: expected an accessor, found none");
+    with(
+        "/animations/0/channels/0/sampler",
+        json!(7),
+        "animation 'walk' channel 0: expected one of 2 samplers, found number 7",
+    );
+    with("/animations/0/channels/0/target/node", json!(7), "animations: expected one of 2 nodes, found number 7");
+    with(
+        "/animations/0/samplers/0/input",
+        json!(1),
+        "animation 'walk' channel 0, accessor 1: expected [Scalar] of numbers, found",
+    );
+    with("/animations/0/samplers/0/output", json!(9), "channel 0: expected one of 3 accessors, found number 9");
     with("/animations/0/samplers/0/interpolation", json!("CUBICSPLINE"), "found 2 values for 6");
-    with("/accessors/0/bufferView", json!(9), "accessor 0: expected buffer view 9, found none");
+    with("/accessors/0/bufferView", json!(9), "accessor 0: expected one of 3 buffer views, found number 9");
     with("/accessors/0/count", json!(4_000_000_000u64), "expected accessors of no more data than the file's");
     with("/accessors/0/count", json!(3), "accessor 0: expected 12 bytes of its buffer view, found 8");
+    with("/bufferViews/0", json!({ "buffer": 0, "byteLength": 8, "byteStride": 2 }), "at least 4 bytes apart, found 2");
     with("/bufferViews/0/byteLength", json!(4_000_000_000u64), "buffer view 0: expected a buffer of 4000000000 bytes");
-    with("/bufferViews/0/buffer", json!(3), "buffer 3: expected a buffer, found none");
+    with("/bufferViews/0/buffer", json!(3), "buffer view 0: expected one of 1 buffers, found number 3");
 }
 
 #[test]
@@ -318,7 +327,7 @@ fn trees_that_are_none_are_refused() {
     };
     with([json!([1]), json!([0])], "node 0: expected a tree, found a node that is its own ancestor");
     with([json!([1, 1]), json!([])], "node 1: expected one parent, found two");
-    with([json!([9]), json!([])], "node 0: expected node 9, found none");
+    with([json!([9]), json!([])], "node 0: expected one of 2 nodes, found number 9");
 }
 
 #[test]

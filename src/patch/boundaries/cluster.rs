@@ -1,27 +1,52 @@
 //! Agglomerative clustering with complete linkage: no two members of a group are farther apart than the threshold.
 
+use rayon::prelude::*;
+
 /// Distances of all pairs of `count` things, symmetric.
+#[derive(Clone)]
 pub(super) struct Distances {
     count: usize,
     values: Vec<f32>,
 }
 
 impl Distances {
-    /// Measures every pair once. O(count squared) of memory.
-    pub fn measure(count: usize, between: impl Fn(usize, usize) -> f32) -> Self {
-        let mut values = vec![0.0; count * count];
+    /// Measures every pair once, in parallel. O(count squared) of memory.
+    pub fn measure(count: usize, between: impl Fn(usize, usize) -> f32 + Sync) -> Self {
+        let row = |i: usize| (0..count).map(|j| if j > i { between(i, j) } else { 0.0 }).collect();
+        let rows: Vec<Vec<f32>> = (0..count).into_par_iter().map(row).collect();
+        let mut values = rows.concat();
         for i in 0..count {
-            for j in i + 1..count {
-                let distance = between(i, j);
-                values[i * count + j] = distance;
-                values[j * count + i] = distance;
+            for j in 0..i {
+                values[i * count + j] = values[j * count + i];
             }
         }
         Self { count, values }
     }
 
+    /// Of things and their images in a mirror, which come after them all in the same order: an image is from another as
+    /// its thing is from that one's, and from a thing as its own thing is from that one's image.
+    pub fn with_images(
+        count: usize,
+        own: impl Fn(usize, usize) -> f32 + Sync,
+        to_image: impl Fn(usize, usize) -> f32 + Sync,
+    ) -> Self {
+        let (own, across) = (Self::measure(count, own), Self::measure(count, &to_image));
+        let at = |i: usize, j: usize| match (i < count) == (j < count) {
+            true => own.at(i % count, j % count),
+            false if i % count == j % count => to_image(i % count, i % count),
+            false => across.at(i % count, j % count),
+        };
+        let all = 2 * count;
+        Self { count: all, values: (0..all * all).map(|k| at(k / all, k % all)).collect() }
+    }
+
     pub fn at(&self, i: usize, j: usize) -> f32 {
         self.values[i * self.count + j]
+    }
+
+    /// All nearer to one than `radius`, itself among them.
+    pub fn within(&self, of: usize, radius: f32) -> Vec<usize> {
+        (0..self.count).filter(|&i| self.at(of, i) < radius).collect()
     }
 
     /// Complete linkage: the merged group, kept at `into`, is as far from others as its farther half.

@@ -1,7 +1,7 @@
 //! Boundaries of the samples' episodes.
 
 use super::*;
-use crate::motion::retarget;
+use crate::motion::{mirror, retarget};
 use crate::patch::episode::{EpisodeOptions, detect_all};
 use crate::samples;
 
@@ -20,23 +20,22 @@ fn bounded(takes: &[Vec<Motion>], options: &BoundaryOptions) -> (Vec<Detection>,
 #[test]
 fn patches_surround_their_events_at_poses_of_the_chosen_groups_and_hold_no_other_event() {
     let takes = collection(&["handshake-walk", "high-five-walk", "push-walk", "talk-walk"]);
-    let options = BoundaryOptions { max_poses: 700, ..Default::default() };
-    let (found, b) = bounded(&takes, &options);
+    let (found, b) = bounded(&takes, &BoundaryOptions::default());
     assert!(b.patches.len() >= 4, "{:?} {:?}", b.patches, b.unbounded);
     let events: usize = found.iter().map(|d| d.events.len()).sum();
-    assert_eq!(b.patches.len() + b.unbounded.len(), events);
+    let in_patches: usize = b.patches.iter().map(|p| p.events.len()).sum();
+    assert_eq!(in_patches + b.unbounded.len(), events);
     for p in &b.patches {
-        let event = &found[p.take].events[p.event];
-        assert_eq!(p.spans.iter().map(|s| s.person).collect::<Vec<_>>(), event.people);
+        let own: Vec<_> = p.events.iter().map(|&e| &found[p.take].events[e]).collect();
         for s in &p.spans {
-            assert!(s.entry.0 < event.begin && event.end < s.exit.0, "{s:?} {} {}", event.begin, event.end);
-            for (frame, group) in [s.entry, s.exit] {
-                let here = Moment { take: p.take, person: s.person, frame };
-                assert!(b.chosen.contains(&group) && b.groups[group].contains(&here), "{here:?}");
+            let mine = || own.iter().filter(|e| e.people.contains(&s.person));
+            assert!(mine().all(|e| s.entry.frame < e.begin && e.end < s.exit.frame) && mine().count() > 0, "{s:?}");
+            for cut in [s.entry, s.exit] {
+                assert!(b.chosen.contains(&cut.group) && b.cuts[p.take][s.person].contains(&cut), "{cut:?}");
             }
-            let others = found[p.take].events.iter().enumerate().filter(|o| o.0 != p.event);
-            for (_, other) in others.filter(|o| o.1.people.contains(&s.person)) {
-                assert!(other.end < s.entry.0 || s.exit.0 < other.begin, "{s:?} {other:?}");
+            let others = (0..found[p.take].events.len()).filter(|e| !p.events.contains(e));
+            for other in others.map(|e| &found[p.take].events[e]).filter(|e| e.people.contains(&s.person)) {
+                assert!(other.end < s.entry.frame || s.exit.frame < other.begin, "{s:?} {other:?}");
             }
         }
     }
@@ -47,13 +46,33 @@ fn poses_of_a_group_are_nearer_than_the_threshold() {
     let takes = collection(&["handshake-walk"]);
     let options = BoundaryOptions { max_poses: 250, ..Default::default() };
     let (_, b) = bounded(&takes, &options);
-    assert!(b.groups.len() > 1 && b.groups.windows(2).all(|g| g[0].len() >= g[1].len()));
+    assert!(b.groups.len() > 1 && b.poses <= 250);
     for group in &b.groups {
-        for (i, p) in group.iter().enumerate() {
-            for q in &group[i + 1..] {
-                let (a, c) = (&takes[p.take][p.person], &takes[q.take][q.person]);
-                assert!(pose::window_distance(a, p.frame, c, q.frame, options.half_window) < options.threshold);
+        let cloud = |m: &Moment| Cloud::of(&takes[m.take][m.person], m.frame);
+        for (i, p) in group.members.iter().enumerate() {
+            for q in &group.members[i + 1..] {
+                assert!(cloud(p).distance(&cloud(q)) < options.threshold);
             }
+        }
+    }
+}
+
+#[test]
+fn a_group_and_its_twin_are_images_of_each_other() {
+    let takes = collection(&["handshake-walk", "speeds"]);
+    let images: Vec<Vec<Motion>> = takes.iter().map(|t| t.iter().map(mirror::motion).collect()).collect();
+    let (_, own) = bounded(&takes, &BoundaryOptions::default());
+    let (_, other) = bounded(&images, &BoundaryOptions::default());
+    for group in &own.groups {
+        let twin = &own.groups[group.twin];
+        assert_eq!((own.groups[twin.twin].phase, twin.phase), (group.phase, group.phase.mirrored()));
+    }
+    // Seen in a mirror everything is the same but for the names of the groups.
+    assert_eq!(own.patches.len(), other.patches.len());
+    for (p, q) in own.patches.iter().zip(&other.patches) {
+        for (s, t) in p.spans.iter().zip(&q.spans) {
+            assert_eq!((s.entry.frame, s.exit.frame), (t.entry.frame, t.exit.frame));
+            assert_eq!(own.groups[s.entry.group].phase, other.groups[t.entry.group].phase.mirrored());
         }
     }
 }
