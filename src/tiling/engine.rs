@@ -26,7 +26,7 @@ use crate::{Error, Result};
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 4000;
 /// Every so many people one is wished for who begins with a box in the hands, for so many tries.
-const LADEN_EVERY: usize = 6;
+const LADEN_EVERY: usize = 10;
 const LADEN_PATIENCE: usize = 60;
 const LADEN_EXPANSIONS: usize = 300;
 /// Failed tries in a row after which no further patch of several people is wished for.

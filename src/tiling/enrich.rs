@@ -68,6 +68,9 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
     let lead = &library.roles[lead_role as usize];
     let horizon = tracks.domain.horizon;
     let (at, tick, joint) = meeting_point(tracks, lead_track, lead, ticks, rng);
+    if !fits_hands(tracks, lead_track, lead.entry_group, tick) {
+        return None;
+    }
     let world_from_patch = at.then(lead.entry.inverse());
     let clock = tick - lead.begin;
 
@@ -158,7 +161,8 @@ fn player(
 ) -> Option<(TrackId, usize, usize)> {
     let tick = (entry.tick - CAST_LEAD).clamp(0, tracks.domain.horizon - 1);
     tracks.occupancy.near(tick, entry.at.position, CAST_RADIUS, near);
-    let mut candidates: Vec<TrackId> = near.iter().map(|&id| tracks.owner(id)).filter(|&t| !taken(t)).collect();
+    let fits = |&t: &TrackId| !taken(t) && fits_hands(tracks, t, entry.group, tick);
+    let mut candidates: Vec<TrackId> = near.iter().map(|&id| tracks.owner(id)).filter(fits).collect();
     candidates.sort_unstable();
     while !candidates.is_empty() {
         let track = candidates.swap_remove(rng.random_range(0..candidates.len()));
@@ -168,6 +172,13 @@ fn player(
         }
     }
     None
+}
+
+/// True if a person has as much in the hands at a tick as people of a pose group have: a box or nothing.
+fn fits_hands(tracks: &Tracks, track: TrackId, group: u32, tick: i32) -> bool {
+    let library = tracks.library;
+    let piece = tracks.piece(tracks.tracks[track][tracks.index_at(track, tick.clamp(0, tracks.domain.horizon - 1))]);
+    library.laden[library.roles[piece.role as usize].entry_group as usize] == library.laden[group as usize]
 }
 
 /// First piece to rip up so that the person can walk to `entry`: where that is easiest; 0 if the person begins there.
