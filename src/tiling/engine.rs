@@ -26,11 +26,11 @@ use crate::{Error, Result};
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 4000;
 /// Every so many people one is wished for who begins with a box in the hands, for so many tries.
-const LADEN_EVERY: usize = 10;
+const LADEN_EVERY: usize = 20;
 const LADEN_PATIENCE: usize = 60;
 const LADEN_EXPANSIONS: usize = 300;
 /// Failed tries in a row after which no further patch of several people is wished for.
-const ENRICH_PATIENCE: usize = 60_000;
+const ENRICH_PATIENCE: usize = 90_000;
 /// The share is aimed at a little higher than wished for: mending may cost a patch or two.
 const ABOVE_WISH: f32 = 1.04;
 /// Largest share of the people's time in patches of several people that early rounds aim at.

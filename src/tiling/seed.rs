@@ -43,13 +43,18 @@ pub(super) fn seed_person(tracks: &mut Tracks, laden: bool, taste: Taste, rng: &
     true
 }
 
-/// Any single-person role; of those who have or get a box in the hands half are to take it up, if there are such.
+/// Any single-person role without a box; or with one, half of them roles that take it up, if there are such.
 fn first_role(library: &Library, laden: bool, rng: &mut ChaCha8Rng) -> u32 {
-    let lifts = |m: &&Move| library.roles[m.role as usize].rests[0].is_some() && library.laden[m.group as usize];
-    let all = || library.forward.iter().flatten();
-    let lifting = laden && rng.random_range(0..2) == 0 && all().any(|m| lifts(&m));
-    let from = library.forward.iter().zip(&library.laden).filter(|(_, group)| lifting || !laden || **group);
-    let moves = from.flat_map(|(moves, _)| moves).filter(|m| !lifting || lifts(m));
-    let roles: Vec<u32> = moves.map(|m| m.role).collect();
-    roles[rng.random_range(0..roles.len())]
+    let lifts = |m: &Move| library.roles[m.role as usize].rests[0].is_some() && library.laden[m.group as usize];
+    let carries = |m: &Move| library.laden[library.roles[m.role as usize].entry_group as usize];
+    let roles = |wanted: &dyn Fn(&Move) -> bool| -> Vec<u32> {
+        library.forward.iter().flatten().filter(|m| wanted(m)).map(|m| m.role).collect()
+    };
+    let wanted = match laden {
+        true if rng.random_range(0..2) == 0 => roles(&lifts),
+        true => roles(&carries),
+        false => roles(&|m| !lifts(m) && !carries(m)),
+    };
+    let wanted = if wanted.is_empty() { roles(&|_| true) } else { wanted };
+    wanted[rng.random_range(0..wanted.len())]
 }
