@@ -135,6 +135,8 @@ fn next_laid(chains: &[Chain], bonds: &[Vec<Bond>], laid: &[Option<(Ground, i64)
 enum Failure {
     /// A place contradicts others.
     Contradiction,
+    /// What else holds leaves no way to it at all.
+    TooFar,
     /// A limit is broken.
     Broken(crate::deform::Broken),
 }
@@ -144,6 +146,7 @@ impl Failure {
         let what = format!("'{}' cannot be there seen from '{}'", place.who.text, place.seen_from.text);
         match self {
             Self::Contradiction => bad(place.line, format!("{what}: it contradicts what was said before")),
+            Self::TooFar => bad(place.line, format!("{what}: that is too far from what else holds")),
             Self::Broken(b) => {
                 let (name, when) = (&story.roles[b.at.role].name, chains[b.at.role].name(b.at.frame));
                 let found = format!("{:.3} {} per frame", b.found, b.unit);
@@ -160,7 +163,7 @@ fn attempt(story: &Composition, threads: &[Thread], bonds: &[Vec<Bond>]) -> std:
     let web = Web::new(threads.to_vec(), &all).map_err(|_| Failure::Contradiction)?;
     let mut handles = anchors(story, threads, bonds);
     let deform = |handles: &[Handle]| web.hold(handles).and_then(|hold| hold.solve(handles));
-    let mut deformed = deform(&handles).ok_or(Failure::Contradiction)?;
+    let mut deformed = deform(&handles).ok_or(Failure::TooFar)?;
     let ends = threads.iter().enumerate().flat_map(|(role, t)| [(role, 0), (role, t.path.len() - 1)]);
     let met = bonds.iter().flat_map(|b| [b[0].a, b[b.len() - 1].a]);
     let uneven = |&(role, frame): &(usize, usize)| {
@@ -176,7 +179,7 @@ fn attempt(story: &Composition, threads: &[Thread], bonds: &[Vec<Bond>]) -> std:
             Handle { role, frame, at: None, tick }
         };
         handles.extend(marks.into_iter().map(whole));
-        deformed = deform(&handles).ok_or(Failure::Contradiction)?;
+        deformed = deform(&handles).ok_or(Failure::TooFar)?;
     }
     match web.strain(&deformed).broken(&limits(story)) {
         Some(broken) => Err(Failure::Broken(broken)),
