@@ -13,6 +13,7 @@ use crowdquilt::patch::{CutOptions, PatchKind, PatchSet, Source, cut, mirrored};
 use crowdquilt::tiling::{Options, Scene, Status, tile};
 use crowdquilt::{Result, samples};
 use glam::Vec2;
+use proptest::prelude::*;
 
 static SOURCES: LazyLock<Vec<Source>> = LazyLock::new(|| {
     let source = |take: samples::Take| Source {
@@ -265,7 +266,9 @@ fn what_is_mistyped_is_named_with_its_line() {
     fails(MEET, "from = 0.5, to = 2.1", "from = 2.1, to = 0.5", &["line 10", "an end after its begin"]);
     fails(MEET, "from = 0.5", "from = -1", &["line 10", "-1"]);
     fails(MEET, "\"bow\", \"start\"", "\"bo\", \"start\"", &["line 12", "ann", "'bo'"]);
-    fails(MEET, "[\"stop\", \"bow\", \"start\"]", "[]", &["line 12", "ann", "at least one clip"]);
+    fails(MEET, "[\"stop\", \"bow\", \"start\"]", "[]", &["line 12", "ann", "1 to 64 clips"]);
+    let often = format!("\"bow\", {}\"start\"", "\"bow\", ".repeat(64));
+    fails(MEET, "\"bow\", \"start\"", &often, &["line 12", "ann", "1 to 64 clips", "found 67"]);
     fails(MEET, "\"bow\", \"start\"", "\"start\", \"bow\"", &["line 12", "ann", "'stand'"]);
     fails(MEET, "name = \"bob\"", "name = \"ann\"", &["line 16", "second role 'ann'"]);
     fails(MEET, "name = \"bob\"", "name = \"b.ob\"", &["line 16", "without '.'"]);
@@ -324,6 +327,25 @@ fn wider_limits_allow_more() {
     assert!(tight.iter().zip(&published).all(|(t, p)| p | !t));
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn no_edit_of_a_file_panics(
+        text in prop::sample::select(vec![MEET, ROWS, PUSH]),
+        edits in prop::collection::vec((0.0f32..1.0, prop::sample::select(b"0123456789.-@[]\"= abe\n#".to_vec())), 1..4),
+    ) {
+        let mut bytes = text.as_bytes().to_vec();
+        for (place, byte) in edits {
+            let at = (place * bytes.len() as f32) as usize;
+            bytes[at] = byte;
+        }
+        if let Err(error) = made(&String::from_utf8(bytes).unwrap()) {
+            prop_assert!(error.to_string().starts_with("compose file: line "), "{error}");
+        }
+    }
+}
+
 fn sample_set() -> PatchSet {
     cut(&SOURCES, &CutOptions::default()).unwrap()
 }
@@ -333,7 +355,7 @@ fn compose_files_beside_others_join_the_set() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/compose");
     let mut set = sample_set();
     let before = set.clone();
-    add(&mut set, &[folder.clone()], &SOURCES, &CutOptions::default()).unwrap();
+    add(&mut set, std::slice::from_ref(&folder), &SOURCES, &CutOptions::default()).unwrap();
     assert_eq!(set.kinds.len(), before.kinds.len() + 6, "three, and their mirror images");
     assert_eq!(set.kinds[..before.kinds.len()], before.kinds);
     let kind = |name: &str| set.kinds.iter().find(|k| k.name == name).unwrap();

@@ -39,11 +39,11 @@ impl Solved {
 pub(super) fn solve(story: &Composition, chains: &[Chain]) -> Result<Solved> {
     let bonds = story.places.iter().map(|place| bonds(place, chains)).collect::<Result<Vec<_>>>()?;
     let threads = lay(story, chains, &bonds)?;
-    let mut solved = attempt(story, &threads, &bonds).or_else(|_| {
+    let mut solved = attempt(story, &threads, &bonds).map_err(|whole| {
         // Which one is it that cannot hold?
-        let failed = (1..=bonds.len()).find_map(|n| attempt(story, &threads, &bonds[..n]).err().map(|f| (n - 1, f)));
-        let (index, failure) = failed.expect("all of them together failed");
-        Err(failure.told(story, chains, &story.places[index]))
+        let failed = (1..bonds.len()).find_map(|n| attempt(story, &threads, &bonds[..n]).err().map(|f| (n - 1, f)));
+        let (index, failure) = failed.unwrap_or((bonds.len().saturating_sub(1), whole));
+        failure.told(story, chains, story.places.get(index))
     })?;
     let first = solved.ticks.iter().map(|t| t[0]).fold(f32::INFINITY, f32::min).round();
     solved.ticks.iter_mut().flatten().for_each(|t| *t -= first);
@@ -142,7 +142,8 @@ enum Failure {
 }
 
 impl Failure {
-    fn told(self, story: &Composition, chains: &[Chain], place: &Place) -> Error {
+    fn told(self, story: &Composition, chains: &[Chain], place: Option<&Place>) -> Error {
+        let Some(place) = place else { return bad(1, "expected people who can be where they start".into()) };
         let what = format!("'{}' cannot be there seen from '{}'", place.who.text, place.seen_from.text);
         match self {
             Self::Contradiction => bad(place.line, format!("{what}: it contradicts what was said before")),
