@@ -1,4 +1,4 @@
-"""The local server of the viewer: the built studio, one crowd and its report or one patch set, on the loopback address only."""
+"""The local server of the viewer, on the loopback address only: the built studio, a crowd and its report, or a set."""
 
 from __future__ import annotations
 

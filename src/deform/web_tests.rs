@@ -56,7 +56,7 @@ fn gathering(core: bool) -> PatchKind {
         ],
         contacts,
         core: core.then_some((begin + 8, end - 6)),
-        mirrored: false,
+        ..PatchKind::default()
     }
 }
 

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec2;
 
+use super::cut_props as props;
 use super::file::filed_rotation;
 use super::mirror::{add_mirrored, find_or_add};
 use super::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};
@@ -41,15 +42,14 @@ pub struct Source {
     pub motions: Vec<Motion>,
 }
 
-/// Cuts the patches of all takes, in their order, into one set. Patches in which somebody holds a prop are left
-/// out: sets and crowds do not carry props yet, and hands around nothing look wrong.
+/// Cuts the patches of all takes, in their order, into one set.
 ///
 /// # Errors
 /// A role outside its capture or without a port; two patches of one name.
 pub fn cut(sources: &[Source], options: &CutOptions) -> Result<PatchSet> {
     let mut set = PatchSet::default();
     for Source { origin, take, motions } in sources {
-        for patch in take.patches.iter().filter(|p| !holds_prop(take, p)) {
+        for patch in &take.patches {
             let cutter = Cutter { take, motions, patch, options };
             let kind = cutter.kind(&mut set.groups).map_err(|e| e.in_file(origin))?;
             if set.kinds.iter().any(|k| k.name == kind.name) {
@@ -74,12 +74,6 @@ pub(super) fn round(set: &mut PatchSet) {
     for fragment in set.kinds.iter_mut().flat_map(|k| &mut k.fragments) {
         fragment.motion.rotations.iter_mut().for_each(|q| *q = filed_rotation(*q));
     }
-}
-
-fn holds_prop(take: &TakeFile, patch: &TakePatch) -> bool {
-    let holds = take.props.iter().flat_map(|prop| &prop.held);
-    let overlap = |role: &TakeRole, begin: f32, end: f32| role.begin < end && begin < role.end;
-    holds.into_iter().any(|h| patch.roles.iter().any(|r| r.person == h.person && overlap(r, h.begin, h.end)))
 }
 
 /// The motion of all people of a take, on its clock, with its foot plants: those of the take file where it has any,
@@ -114,7 +108,7 @@ pub fn load_take(path: &Path, take: &TakeFile, options: &CutOptions) -> Result<V
 }
 
 /// The frame nearest to a time in seconds.
-fn frame(time: f32) -> usize {
+pub(super) fn frame(time: f32) -> usize {
     (time * FPS).round() as usize
 }
 
@@ -138,6 +132,7 @@ impl Cutter<'_> {
             labels: self.patch.labels.clone(),
             contacts: contacts.collect(),
             core: self.core(start, &fragments)?,
+            props: props::of_patch(self.take, self.patch, start, &fragments).map_err(|problem| self.bad(problem))?,
             fragments,
             mirrored: false,
         })

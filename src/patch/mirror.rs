@@ -1,10 +1,13 @@
 //! Mirrored copies of patch kinds.
 
-use super::{Contact, PatchKind, PatchSet, PoseGroup, Touch};
+use super::{Contact, PatchKind, PatchProp, PatchSet, PoseGroup, Touch, prop};
 use crate::motion::mirror;
 
 /// The label of kinds that are their own mirror image, of which no copy is made.
 pub(super) const SYMMETRIC: &str = "symmetric";
+
+/// What the names of mirrored copies end with.
+pub(super) const MIRRORED: &str = "-mirror";
 
 /// The kind seen in a mirror, called `NAME-mirror`; its ports' pose groups swap sides (`walk_left`, `walk_right`)
 /// and are added to `groups` where they are new.
@@ -19,12 +22,18 @@ pub fn mirrored(kind: &PatchKind, groups: &mut Vec<PoseGroup>) -> PatchKind {
             begin: f.begin,
         }
     });
+    let seen = |p: &PatchProp| PatchProp {
+        before: p.before.map(prop::mirrored),
+        after: p.after.map(prop::mirrored),
+        ..p.clone()
+    };
     PatchKind {
-        name: format!("{}-mirror", kind.name),
+        name: format!("{}{MIRRORED}", kind.name),
         fragments: fragments.collect(),
         labels: kind.labels.clone(),
         contacts: kind.contacts.iter().map(|c| Contact { a: touch(c.a), b: touch(c.b), ..*c }).collect(),
         core: kind.core,
+        props: kind.props.iter().map(seen).collect(),
         mirrored: true,
     }
 }

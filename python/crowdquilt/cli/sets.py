@@ -21,7 +21,7 @@ PICTURES = (".png", ".svg", ".pdf")
 def kinds(
     patches: Annotated[Path, typer.Argument(help="Patch set (.patches).")],
     sheet: Annotated[Path | None, typer.Option(help="Draw every kind: a contact sheet (.png, .svg, .pdf).")] = None,
-    groups: Annotated[Path | None, typer.Option(help="Draw the pose groups and what leads from one to another.")] = None,
+    groups: Annotated[Path | None, typer.Option(help="Draw the pose groups and what leads to what.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Tell what kinds a patch set holds, how they follow each other, and what it lacks.
@@ -30,8 +30,8 @@ def kinds(
     """
     for picture in (sheet, groups):
         if picture is not None and picture.suffix not in PICTURES:
-            found = picture.suffix or "no suffix"
-            raise CrowdquiltError(f"{picture}: expected a picture ({', '.join(PICTURES)}), found {found}")
+            suffix = picture.suffix or "no suffix"
+            raise CrowdquiltError(f"{picture}: expected a picture ({', '.join(PICTURES)}), found {suffix}")
     made = PatchSet.load(patches)
     found = patch.connectivity(made)
     if as_json:
@@ -88,19 +88,25 @@ def label_table(patches: PatchSet) -> Table:
 
 
 def group_table(found: Connectivity) -> Table:
-    """Pose groups: how many kinds lead in and out, and where one can go alone."""
-    titles = ("pose group", "in alone", "together", "out alone", "together", "turn", "m/s", "seconds")
+    """Pose groups: how many kinds of one person and of several lead in and out, and where one can go alone."""
     table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
-    for title in titles:
-        table.add_column(title, justify="left" if title == "pose group" else "right")
+    for title in ("pose group", "in", "out", "turn alone", "m/s", "seconds"):
+        table.add_column(title, justify="left" if title == "pose group" else "right", no_wrap=True)
     traps = {name for component in found.components if not component.main for name in component.groups}
     for group in found.groups:
         name = f"[red]{escape(group.name)}[/red]" if group.name in traps else escape(group.name)
-        counts = (group.in_alone, group.in_together, group.out_alone, group.out_together)
+        ways = (both(group.in_alone, group.in_together), both(group.out_alone, group.out_together))
         s = group.steering
-        ranges = ["", "", ""] if s is None else [f"{s.turn_deg[0]:+.0f}° {s.turn_deg[1]:+.0f}°", span(s.speed), span(s.secs)]
-        table.add_row(name, *(str(n) if n else "" for n in counts), *ranges)
+        ranges = ("", "", "")
+        if s is not None:
+            ranges = (f"{s.turn_deg[0]:+.0f}° {s.turn_deg[1]:+.0f}°", span(s.speed), span(s.secs))
+        table.add_row(name, *ways, *ranges)
     return table
+
+
+def both(alone: int, together: int) -> str:
+    """Kinds of one person, and of several."""
+    return f"{alone} +{together}" if together else str(alone)
 
 
 def span(ends: tuple[float, float]) -> str:

@@ -43,7 +43,9 @@ def plot(
 
 @app.command(epilog=example("view out/demo/crowd.crowd", "view people.patches"))
 def view(
-    crowd: Annotated[Path, typer.Argument(help="Crowd (.crowd) or patch set (.patches).")] = Path("out/demo/crowd.crowd"),
+    crowd: Annotated[Path, typer.Argument(help="Crowd (.crowd) or patch set (.patches).")] = Path(
+        "out/demo/crowd.crowd"
+    ),
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port on this machine; a free one if 0.")] = 0,
     no_open: Annotated[bool, typer.Option("--no-open", help="Do not open a browser.")] = False,
 ) -> None:

@@ -9,12 +9,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
+from crowdquilt._core import PatchSet, kind_capsules, kind_positions
 from crowdquilt.plot.style import INK, Colour, mix
 
-# The capsules of a body by limb: trunk and head, then legs, then arms.
-LIMBS = ([0, 1, 2, 3], [4, 6, 8], [5, 7, 9], [10, 12, 14], [11, 13, 15])
+# The capsules of a body by limb: neck, trunk and head, then legs, then arms. The neck is added here.
+LIMBS = ([16, 0, 1, 2, 3], [4, 6, 8], [5, 7, 9], [10, 12, 14], [11, 13, 15])
+HEAD = 3
+SHOULDERS = 2
+HEAD_JOINT = 13
+NECK_RADIUS = 0.052
 OUTLINE = 0.022
-PITCH = np.radians(10)
+PITCH = np.radians(7)
 TURNED = np.radians(24)  # away from straight from the side
 
 
@@ -53,6 +58,15 @@ class View:
         return places, near * np.cos(PITCH) + up * np.sin(PITCH)
 
 
+def bodies_of(patches: PatchSet, kind: int, role: int) -> np.ndarray:
+    """(frames, capsules, 7) the capsules of a role's body, a neck included."""
+    capsules = kind_capsules(patches, kind, role)
+    joints = kind_positions(patches, kind, role)
+    chest = (capsules[:, SHOULDERS, :3] + capsules[:, SHOULDERS, 3:6]) / 2
+    neck = np.concatenate([chest, joints[:, HEAD_JOINT], np.full((len(joints), 1), NECK_RADIUS)], axis=1)
+    return np.concatenate([capsules, neck[:, None]], axis=1)
+
+
 def stadiums(ends: np.ndarray, radii: np.ndarray, corners: int = 9) -> np.ndarray:
     """(n, 2 corners, 2) outlines of capsules whose ends (n, 2, 2) are on the sheet."""
     a, b = ends[:, 0], ends[:, 1]
@@ -77,7 +91,7 @@ def shapes(body: np.ndarray, view: View, colour: Colour) -> tuple[list[np.ndarra
         shade = 0.30 * float(np.clip((near.mean() - near[limb].mean()) / 0.25, 0, 1))
         for i in limb:
             polygons.append(bodies[i])
-            fills.append(mix(mix(colour, "white", 0.32 if i == 3 else 0.0), INK, shade))
+            fills.append(mix(mix(colour, "white", 0.32 if i in (HEAD, len(body) - 1) else 0.0), INK, shade))
     return polygons, fills, float(near.mean())
 
 
@@ -93,7 +107,10 @@ def draw_people(
     spots = [spot(body, view) for body, _ in bodies]
     axes.add_collection(
         PolyCollection(
-            [place + scale * s for s in spots], facecolors=(0.15, 0.14, 0.12, 0.13), edgecolors="none", zorder=zorder - 1
+            [place + scale * s for s in spots],
+            facecolors=(0.15, 0.14, 0.12, 0.13),
+            edgecolors="none",
+            zorder=zorder - 1,
         )
     )
     polygons = [place + scale * polygon for p in painted for polygon in p[0]]
@@ -112,9 +129,9 @@ def spot(body: np.ndarray, view: View) -> np.ndarray:
     return np.asarray(view.project(middle)[0] + ellipse)
 
 
-def extent(bodies: list[np.ndarray], view: View) -> tuple[float, float]:
-    """The leftmost and rightmost place of some bodies, metres."""
+def extent(bodies: list[np.ndarray], view: View) -> tuple[np.ndarray, np.ndarray]:
+    """The lower left and the upper right corner of some bodies on the sheet, metres."""
     all_of = np.concatenate(bodies)
     ends, _ = view.project(all_of[:, :6].reshape(-1, 2, 3))
-    reach = all_of[:, 6] + OUTLINE
-    return float((ends[..., 0] - reach[:, None]).min()), float((ends[..., 0] + reach[:, None]).max())
+    reach = (all_of[:, 6] + OUTLINE)[:, None, None]
+    return (ends - reach).min(axis=(0, 1)), (ends + reach).max(axis=(0, 1))

@@ -13,15 +13,17 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch
 from matplotlib.path import Path
 
-from crowdquilt._core import Connectivity, PatchSet, connectivity, kind_capsules
+from crowdquilt._core import Connectivity, PatchSet, connectivity
 from crowdquilt.plot import style
-from crowdquilt.plot.figures import View, draw_people
+from crowdquilt.plot.figures import View, bodies_of, draw_people
 
 ALONE, TOGETHER, FAULT = style.INK, "#2d6fa3", "#c8443f"
+ARROW = "#77736b"
 BODY = to_rgb("#8d9aa6")
 NODE = 0.74  # inches
 APART = 3.1  # inches between neighbours
 FIGURE = 0.50  # inches per metre
+PORTS = 40  # that are looked at for a typical pose
 ORDERED = 7  # at most so many groups are put in the best order, by trying all
 
 
@@ -33,7 +35,7 @@ def groups(patches: PatchSet, path: str | FilePath | None = None, dpi: int = 150
     found = connectivity(patches)
     names = ordered([g for component in found.components for g in component.groups], found)
     places = around(len(names))
-    half = np.abs(places).max(axis=0, initial=0.0) + NODE + 1.15
+    half = np.abs(places).max(axis=0, initial=0.0) + NODE + 0.85
     notes = notes_of(found)
     wide = max(2 * half[0], 8.2)
     rows = len(names) + 1
@@ -78,10 +80,11 @@ def ordered(names: Sequence[str], found: Connectivity) -> list[str]:
     def length(order: Sequence[str]) -> float:
         at = {name: 2 * np.pi * i / len(order) for i, name in enumerate(order)}
         ends = [(sorted(pair), weight) for pair, weight in weights.items() if len(pair) == 2]
-        return sum(weight * abs(np.sin((at[a] - at[b]) / 2)) for (a, b), weight in ends)
+        return float(sum(weight * abs(np.sin((at[a] - at[b]) / 2)) for (a, b), weight in ends))
 
     first, *others = names
-    return list(min(((first, *order) for order in permutations(others)), key=length))
+    orders = [[first, *order] for order in permutations(others)]
+    return min(orders, key=length)
 
 
 def around(count: int) -> np.ndarray:
@@ -89,26 +92,36 @@ def around(count: int) -> np.ndarray:
     if count < 3:
         return np.array([[APART * (i - (count - 1) / 2), 0.0] for i in range(count)]).reshape(-1, 2)
     angles = np.pi / 2 - 2 * np.pi * np.arange(count) / count
-    return APART / (2 * np.sin(np.pi / count)) * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    radius = APART / (2 * np.sin(np.pi / count))
+    return np.asarray(radius * np.stack([np.cos(angles), np.sin(angles)], axis=1))
 
 
 def node(axes: Axes, patches: PatchSet, name: str, place: np.ndarray, fault: bool) -> None:
     """A group: somebody in its pose, and its name."""
     edge = FAULT if fault else style.INK
     axes.add_patch(Circle((place[0], place[1]), NODE, facecolor=style.FLOOR, edgecolor=edge, linewidth=1.8, zorder=4))
-    pose = typical(patches, name)
-    if pose is not None:
-        body, heading = pose
+    body = typical(patches, name)
+    if body is not None:
         feet = place + [0, -0.34]
-        draw_people(axes, [(body, BODY)], View.beside(heading + np.radians(30)), feet, (FIGURE, FIGURE), zorder=6)
-    axes.text(place[0], place[1] - 0.52, name.replace("_", " "), size=9.5, weight="bold", color=edge, ha="center",
-              va="center", zorder=7)  # fmt: skip
+        draw_people(axes, [(body, BODY)], View.beside(np.radians(30)), feet, (FIGURE, FIGURE), zorder=6)
+    axes.text(
+        place[0],
+        place[1] - 0.52,
+        name.replace("_", " "),
+        size=9.5,
+        weight="bold",
+        color=edge,
+        ha="center",
+        va="center",
+        zorder=7,
+    )
 
 
-def typical(patches: PatchSet, group: str) -> tuple[np.ndarray, float] | None:
-    """A body in the pose of a group, standing at the origin, and its heading; where possible of somebody alone."""
+def typical(patches: PatchSet, group: str) -> np.ndarray | None:
+    """The body of a group's most typical port, standing at the origin and heading along z; where there are kinds of one
+    person, of one of them. O(ports x capsules)."""
     ports = [
-        (kind.people, index, number, frame)
+        (kind.people > 1, index, number, frame)
         for index, kind in enumerate(patches.kinds)
         for number, role in enumerate(kind.roles)
         for frame, at in ((0, role.entry), (-1, role.exit))
@@ -116,31 +129,47 @@ def typical(patches: PatchSet, group: str) -> tuple[np.ndarray, float] | None:
     ]
     if not ports:
         return None
-    _, index, role, frame = min(ports, key=lambda port: (port[0] > 1, port[3]))
-    body = kind_capsules(patches, index, role)[frame]
-    heading = patches.path(index, role)[1][frame]
-    body[:, [0, 3]] -= body[0, 0]
-    body[:, [2, 5]] -= body[0, 2]
-    return body, float(heading)
+    fewest = min(port[0] for port in ports)
+    bodies = np.array([posed(patches, *port[1:]) for port in ports if port[0] == fewest][:PORTS])
+    apart = np.linalg.norm(bodies - np.median(bodies, axis=0), axis=(1, 2))
+    return np.asarray(bodies[np.argmin(apart)])
+
+
+def posed(patches: PatchSet, kind: int, role: int, frame: int) -> np.ndarray:
+    """A body moved to the origin and turned to head along z."""
+    body = bodies_of(patches, kind, role)[frame].astype(float)
+    heading = float(patches.path(kind, role)[1][frame])
+    sin, cos = np.sin(heading), np.cos(heading)
+    hips = body[0, [0, 2]].copy()
+    for x, z in ((0, 2), (3, 5)):
+        aside, ahead = body[:, x] - hips[0], body[:, z] - hips[1]
+        body[:, x], body[:, z] = aside * cos - ahead * sin, aside * sin + ahead * cos
+    return np.asarray(body)
 
 
 def links(axes: Axes, found: Connectivity, where: dict[str, np.ndarray], faulty: set[str]) -> None:
     """All arrows; those into and out of traps are red, those that are missing are dashed."""
     for link in found.links:
         trap = link.entry != link.exit and bool({link.entry, link.exit} & faulty)
-        colour = FAULT if trap else ALONE if link.alone else TOGETHER
+        colour = FAULT if trap else ARROW if link.alone else TOGETHER
         counts = [(str(link.alone), ALONE)] if link.alone else []
         counts += [(f"+{link.together}", TOGETHER)] if link.together else []
-        width = 0.9 + 0.55 * float(np.log2(1 + link.alone + link.together))
+        width = 0.8 + 0.4 * float(np.log2(1 + link.alone + link.together))
         arrow(axes, where[link.entry], where[link.exit], colour, width, counts, dashed=not link.alone)
     for entry, exit_ in found.missing:
         arrow(axes, where[entry], where[exit_], FAULT, 1.6, [("missing", FAULT)], dashed=True, bend=0.42)
 
 
 def arrow(
-    axes: Axes, a: np.ndarray, b: np.ndarray, colour: str, width: float, counts: list[tuple[str, str]], dashed: bool,
+    axes: Axes,
+    a: np.ndarray,
+    b: np.ndarray,
+    colour: str,
+    width: float,
+    counts: list[tuple[str, str]],
+    dashed: bool,
     bend: float = 0.14,
-) -> None:  # fmt: skip
+) -> None:
     """An arrow from group to group, bent to its left so that both ways are seen, or a loop; counts in its middle."""
     if np.allclose(a, b):
         path, middle = loop(a)
@@ -148,9 +177,15 @@ def arrow(
         path, middle = bow(a, b, bend)
     axes.add_patch(
         FancyArrowPatch(
-            path=path, arrowstyle=f"-|>,head_length={4 + width},head_width={2 + 0.6 * width}", color=colour,
-            linewidth=width, linestyle=(0, (4, 2.4)) if dashed else "solid", capstyle="butt", joinstyle="miter", zorder=3,
-        )  # fmt: skip
+            path=path,
+            arrowstyle=f"-|>,head_length={4 + width},head_width={2 + 0.6 * width}",
+            color=colour,
+            linewidth=width,
+            linestyle=(0, (4, 2.4)) if dashed else "solid",
+            capstyle="butt",
+            joinstyle="miter",
+            zorder=3,
+        )
     )
     label(axes, middle, counts)
 
@@ -180,13 +215,16 @@ def loop(at: np.ndarray) -> tuple[Path, np.ndarray]:
 
 def label(axes: Axes, place: np.ndarray, words: list[tuple[str, str]]) -> None:
     """Coloured words side by side, their middle at `place`, on a patch of paper."""
-    texts = [axes.text(0, place[1], text, size=9.5, weight="bold", color=colour, va="center_baseline", zorder=5.2)
-             for text, colour in words]  # fmt: skip
+    texts = [
+        axes.text(0, place[1], text, size=9.5, weight="bold", color=colour, va="center_baseline", zorder=5.2)
+        for text, colour in words
+    ]
     widths = [t.get_window_extent().width / axes.figure.dpi for t in texts]
     total = sum(widths) + 0.05 * (len(widths) - 1)
     x = place[0] - total / 2
-    axes.plot([x + 0.04, x + total - 0.04], [place[1]] * 2, color=style.PAPER, linewidth=15, solid_capstyle="round",
-              zorder=5)  # fmt: skip
+    axes.plot(
+        [x + 0.04, x + total - 0.04], [place[1]] * 2, color=style.PAPER, linewidth=15, solid_capstyle="round", zorder=5
+    )
     for text, width in zip(texts, widths, strict=True):
         text.set_x(x)
         x += width + 0.05
@@ -207,21 +245,24 @@ def notes_of(found: Connectivity) -> list[str]:
     return lines
 
 
-COLUMNS = (("alone from", 0.0), ("turn", 1.75), ("speed, m/s", 3.15), ("time, s", 4.4), ("ahead, m", 5.35), ("left, m", 6.35))  # fmt: skip
+def figure(value: float, digits: int) -> str:
+    """A rounded number; what is rounded to zero has no sign."""
+    return f"{round(value, digits) + 0.0:.{digits}f}"
 
 
-def table(
-    page: Figure, found: Connectivity, names: list[str], faulty: set[str], top: float, notes: list[str]
-) -> None:
+COLUMNS = {"alone from": 0.0, "turn": 1.75, "speed, m/s": 3.15, "time, s": 4.4, "ahead, m": 5.35, "left, m": 6.35}
+
+
+def table(page: Figure, found: Connectivity, names: list[str], faulty: set[str], top: float, notes: list[str]) -> None:
     """Where one can go alone from each group, and below what to do about faults."""
     wide, tall = page.get_size_inches()
     left = max(0.45, (wide - 7.3) / 2)
 
     def put(column: int, y: float, text: str, colour: str) -> None:
-        page.text((left + COLUMNS[column][1]) / wide, y / tall, text, size=9, color=colour, va="center")
+        page.text((left + list(COLUMNS.values())[column]) / wide, y / tall, text, size=9, color=colour, va="center")
 
     y = top - 0.12
-    for column, (title, _) in enumerate(COLUMNS):
+    for column, title in enumerate(COLUMNS):
         put(column, y, title, style.FAINT)
     by_name = {g.name: g for g in found.groups}
     for name in names:
@@ -235,7 +276,7 @@ def table(
         ranges = (steering.turn_deg, steering.speed, steering.secs, steering.ahead, steering.left)
         for column, (low, high) in enumerate(ranges):
             digits, unit = (0, "°") if column == 0 else (1, "")
-            put(column + 1, y, f"{low + 0.0:.{digits}f}{unit} to {high + 0.0:.{digits}f}{unit}", colour)
+            put(column + 1, y, f"{figure(low, digits)}{unit} to {figure(high, digits)}{unit}", colour)
     y -= 0.12
     for line in notes:
         y -= 0.24

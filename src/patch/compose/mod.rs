@@ -126,6 +126,7 @@ pub fn compose(text: &str, sources: &[Source], groups: &mut Vec<PoseGroup>) -> R
     hands::lead(&story, &contacts, &mut fragments)?;
     clear::check(&story, &contacts, &fragments)?;
     Ok(PatchKind {
+        props: Vec::new(),
         name: story.name.clone(),
         labels: story.labels.clone(),
         core: core(&story, &chains, &solved),

@@ -20,7 +20,9 @@ import type { BodyPart, PatchSet, SetKind } from "../set/model";
 import { roleColor } from "./palette";
 
 const PATH_WIDTH = 0.03;
-const CORE_WIDTH = 0.075;
+const CORE_WIDTH = 0.055;
+/** From corner to corner of a path, metres. */
+const STEP = 0.03;
 /** From a port to its label, metres. */
 const LABEL_AWAY = 0.4;
 /** From the wrist to the middle of the palm, as src/motion/contacts.rs. */
@@ -107,14 +109,29 @@ class Way {
     const last = this.points.length - 1;
     const out: number[] = [];
     const [from, to] = this.kind.core ?? [0, -1];
-    for (let f = 0; f < last; f++) {
-      const inside = f + this.begin >= from && f + 1 + this.begin <= to;
-      strip(this.points[f], this.points[f + 1], inside ? CORE_WIDTH : PATH_WIDTH, out);
+    const corners = this.corners();
+    for (const [i, f] of corners.entries()) {
+      const next = corners[i + 1] ?? f;
+      const inside = f + this.begin >= from && next + this.begin <= to;
+      const width = inside ? CORE_WIDTH : PATH_WIDTH;
+      strip(this.points[f], this.points[next], width, out);
+      disc(this.points[f], 0, width / 2, out, 12);
     }
     disc(this.points[0], 0.11, 0.15, out);
     this.pointer(0, 0.18, 0.13, out);
     this.pointer(last, 0.02, 0.3, out);
     return out;
+  }
+
+  /** Frames that are some way from each other: somebody who stands sways, and a band along that would bristle. */
+  private corners(): number[] {
+    const last = this.points.length - 1;
+    const kept = [0];
+    for (let f = 1; f < last; f++) {
+      const [a, b] = [this.points[kept[kept.length - 1]], this.points[f]];
+      if (Math.hypot(b[0] - a[0], b[1] - a[1]) >= STEP) kept.push(f);
+    }
+    return [...kept, last];
   }
 
   /** A dot at every second of the kind's clock. */
@@ -151,25 +168,22 @@ class Way {
   }
 }
 
-/** A band of `width` from `a` to a little after `b`, so that bends have no gaps. */
+/** A band of `width` from `a` to `b`. */
 function strip(a: Vec2, b: Vec2, width: number, out: number[]): void {
   const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
   if (length < 1e-6) return;
   const [x, z] = [((b[0] - a[0]) / length) * (width / 2), ((b[1] - a[1]) / length) * (width / 2)];
-  const beyond = 0.5 * Math.min(1, length / width);
-  const end: Vec2 = [b[0] + x * beyond, b[1] + z * beyond];
   const corners: Vec2[] = [
     [a[0] - z, a[1] + x],
     [a[0] + z, a[1] - x],
-    [end[0] + z, end[1] - x],
-    [end[0] - z, end[1] + x],
+    [b[0] + z, b[1] - x],
+    [b[0] - z, b[1] + x],
   ];
   for (const i of [0, 2, 1, 0, 3, 2]) out.push(corners[i][0], 0, corners[i][1]);
 }
 
 /** A ring, or a disc if `inner` is 0. */
-function disc([x, z]: Vec2, inner: number, outer: number, out: number[]): void {
-  const corners = 28;
+function disc([x, z]: Vec2, inner: number, outer: number, out: number[], corners = 28): void {
   const point = (i: number, r: number) => {
     const angle = (i / corners) * Math.PI * 2;
     return [x + Math.sin(angle) * r, 0, z + Math.cos(angle) * r];
@@ -225,19 +239,23 @@ function sign(text: string, color: string): Sprite {
   return made;
 }
 
-/** A bright spot where people touch, seen through bodies. */
+/** A bright ring around the place where people touch, seen through bodies. */
 function halo(): Sprite {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 128;
   const context = canvas.getContext("2d") as CanvasRenderingContext2D;
-  const glow = context.createRadialGradient(64, 64, 8, 64, 64, 62);
-  glow.addColorStop(0, "rgb(255 244 214 / 95%)");
-  glow.addColorStop(0.3, "rgb(240 150 60 / 75%)");
-  glow.addColorStop(1, "rgb(240 150 60 / 0%)");
+  const glow = context.createRadialGradient(64, 64, 0, 64, 64, 62);
+  glow.addColorStop(0, "rgb(255 190 90 / 55%)");
+  glow.addColorStop(0.5, "rgb(255 170 60 / 25%)");
+  glow.addColorStop(0.68, "rgb(240 140 40 / 30%)");
+  glow.addColorStop(0.74, "rgb(255 176 70 / 100%)");
+  glow.addColorStop(0.84, "rgb(255 176 70 / 100%)");
+  glow.addColorStop(0.9, "rgb(240 140 40 / 20%)");
+  glow.addColorStop(1, "rgb(240 140 40 / 0%)");
   context.fillStyle = glow;
   context.fillRect(0, 0, 128, 128);
   const made = sprite(canvas, false);
-  made.scale.setScalar(0.3);
+  made.scale.setScalar(0.24);
   made.renderOrder = 4;
   return made;
 }
