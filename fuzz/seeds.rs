@@ -45,6 +45,9 @@ fn main() -> std::io::Result<()> {
     write("crowd", "small.crowd", &fixture::lattice(1, 1).to_bytes())?;
     write("patches", "small.patches", &small_set().to_bytes())?;
     write("scene", "plaza.toml", include_bytes!("../examples/plaza.toml"))?;
+    write("compose", "meet.toml", include_bytes!("../examples/compose/meet-and-bow.compose.toml"))?;
+    write("compose", "rows.toml", include_bytes!("../examples/compose/rows-bow.compose.toml"))?;
+    write("compose", "push.toml", include_bytes!("../examples/compose/push-and-stumble.compose.toml"))?;
     write("rig", "small.toml", b"hips = \"Root_M\"\nleft_up_leg = \"Hip_L\"\n")?;
     write("avatar", "small.glb", &avatar::character(&glb))?;
     for take in samples::generate(1).iter().take(3) {

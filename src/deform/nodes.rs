@@ -22,9 +22,19 @@ impl Spot {
     }
 }
 
-/// The node of every frame of every thread, the number of nodes, and the component of every thread; or the index of a
-/// bond that contradicts others or names a frame that does not exist. Nodes are numbered in order of time.
-pub(super) fn nodes(threads: &[Thread], bonds: &[Bond]) -> Result<(Vec<Vec<Spot>>, usize, Vec<usize>), usize> {
+/// How threads are tied.
+pub(super) struct Ties {
+    /// The node of every frame of every thread.
+    pub spots: Vec<Vec<Spot>>,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Threads of one component have the same number.
+    pub components: Vec<usize>,
+}
+
+/// Ties threads by bonds; or the index of a bond that contradicts others or names a frame that does not exist. Nodes are
+/// numbered in order of time.
+pub(super) fn tie(threads: &[Thread], bonds: &[Bond]) -> Result<Ties, usize> {
     let exists = |&(role, frame): &(usize, usize)| threads.get(role).is_some_and(|t| frame < t.path.len());
     if let Some(bad) = bonds.iter().position(|b| !exists(&b.a) || !exists(&b.b)) {
         return Err(bad);
@@ -51,7 +61,7 @@ pub(super) fn nodes(threads: &[Thread], bonds: &[Bond]) -> Result<(Vec<Vec<Spot>
         }
     }
     let spots = spots.into_iter().map(|s| s.into_iter().map(|s| s.expect("all frames were visited")).collect());
-    Ok((spots.collect(), count, components))
+    Ok(Ties { spots: spots.collect(), nodes: count, components })
 }
 
 /// Hangs a frame and all that is bonded to it on one node.

@@ -24,7 +24,7 @@
 
 use super::Limits;
 use super::band::Complex;
-use super::nodes::{Spot, nodes};
+use super::nodes::{Spot, Ties, tie};
 use super::strain::Strain;
 use super::strand::compliance;
 use super::system::{Pinned, Row, System};
@@ -115,7 +115,7 @@ impl Web {
     /// # Errors
     /// The index of the first bond that contradicts those before it, or that names a frame that does not exist.
     pub fn new(threads: Vec<Thread>, bonds: &[Bond]) -> Result<Self, usize> {
-        let (spots, nodes, components) = nodes(&threads, bonds)?;
+        let Ties { spots, nodes, components } = tie(&threads, bonds)?;
         let mut web = Self {
             space: System { size: 2 * nodes, rows: vec![] },
             time: System { size: nodes, rows: vec![] },

@@ -183,3 +183,35 @@ fn append(motion: &mut Motion, next: &Motion) {
     }
     motion.plants.sort_by_key(|p| (p.begin, p.foot));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::testing::walking;
+    use glam::Vec2;
+
+    #[test]
+    fn a_walk_cut_and_joined_is_the_walk() {
+        let walk = moved(&walking(4.0), Ground::IDENTITY);
+        let (cut, last) = (57, walk.len() - 1);
+        let elsewhere = moved(&walk.slice(cut, last), Ground::new(Vec2::new(4.0, -1.0), 2.0));
+        let joined = join(walk.slice(0, cut), &elsewhere, 0);
+        assert_eq!((joined.len(), &joined.plants), (walk.len(), &walk.plants));
+        for f in 0..walk.len() {
+            assert!(joined.path.points[f].distance(walk.path.points[f]) < 5e-3, "frame {f}");
+            assert!((joined.path.headings[f] - walk.path.headings[f]).abs() < 1e-2, "frame {f}");
+            let turn = |j: usize| joined.pose(f)[j].angle_between(walk.pose(f)[j]);
+            assert!((0..JOINT_COUNT).map(turn).fold(0.0, f32::max) < 0.05, "frame {f}");
+        }
+    }
+
+    #[test]
+    fn what_differs_is_shared_smoothly() {
+        let mut late = walking(3.0);
+        late.heights.iter_mut().for_each(|h| *h += 0.06);
+        let joined = join(walking(3.0), &late, 0);
+        let step = joined.heights.windows(2).map(|h| (h[1] - h[0]).abs()).fold(0.0, f32::max);
+        let own = late.heights.windows(2).map(|h| (h[1] - h[0]).abs()).fold(0.0, f32::max);
+        assert!(step < own + 0.012, "{step} after {own}");
+    }
+}

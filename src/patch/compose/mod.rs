@@ -43,6 +43,7 @@ mod chain;
 mod clear;
 mod clip;
 mod hands;
+mod moment;
 mod retime;
 mod row;
 mod solve;

@@ -42,3 +42,28 @@ fn push_between(from: &Motion, i: usize, t: f32, out: &mut Motion) {
     let between = |j: usize| -> Quat { if t == 0.0 { a[j] } else { a[j].lerp(b[j], t) } };
     out.rotations.extend((0..JOINT_COUNT).map(between));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::testing::walking;
+
+    #[test]
+    fn whole_ticks_change_nothing_and_slower_ones_play_what_is_between() {
+        let walk = walking(2.0);
+        let n = walk.len();
+        let ticks = |rate: f32| (0..n).map(|i| 7.0 + i as f32 * rate).collect::<Vec<f32>>();
+        assert_eq!(play(&walk, &walk.path, &ticks(1.0)), (walk.clone(), 7));
+        let (half, begin) = play(&walk, &walk.path, &ticks(2.0));
+        assert_eq!((half.len(), begin), (2 * n - 1, 7));
+        for f in 0..n - 1 {
+            assert!(half.path.points[2 * f].distance(walk.path.points[f]) < 1e-5);
+            let middle = walk.path.points[f].lerp(walk.path.points[f + 1], 0.5);
+            assert!(half.path.points[2 * f + 1].distance(middle) < 1e-5);
+            assert!(half.pose(2 * f)[3].angle_between(walk.pose(f)[3]) < 5e-3);
+        }
+        for (slow, plant) in half.plants.iter().zip(&walk.plants) {
+            assert_eq!((slow.begin, slow.end), (2 * plant.begin, 2 * plant.end));
+        }
+    }
+}

@@ -39,11 +39,11 @@ impl Solved {
 pub(super) fn solve(story: &Composition, chains: &[Chain]) -> Result<Solved> {
     let bonds = story.places.iter().map(|place| bonds(place, chains)).collect::<Result<Vec<_>>>()?;
     let threads = lay(story, chains, &bonds)?;
-    let mut solved = attempt(story, &threads, &bonds).or_else(|_| {
+    let mut solved = attempt(story, &threads, &bonds).map_err(|whole| {
         // Which one is it that cannot hold?
-        let failed = (1..=bonds.len()).find_map(|n| attempt(story, &threads, &bonds[..n]).err().map(|f| (n - 1, f)));
-        let (index, failure) = failed.expect("all of them together failed");
-        Err(failure.told(story, chains, &story.places[index]))
+        let failed = (1..bonds.len()).find_map(|n| attempt(story, &threads, &bonds[..n]).err().map(|f| (n - 1, f)));
+        let (index, failure) = failed.unwrap_or((bonds.len().saturating_sub(1), whole));
+        failure.told(story, chains, story.places.get(index))
     })?;
     let first = solved.ticks.iter().map(|t| t[0]).fold(f32::INFINITY, f32::min).round();
     solved.ticks.iter_mut().flatten().for_each(|t| *t -= first);
@@ -135,15 +135,19 @@ fn next_laid(chains: &[Chain], bonds: &[Vec<Bond>], laid: &[Option<(Ground, i64)
 enum Failure {
     /// A place contradicts others.
     Contradiction,
+    /// What else holds leaves no way to it at all.
+    TooFar,
     /// A limit is broken.
     Broken(crate::deform::Broken),
 }
 
 impl Failure {
-    fn told(self, story: &Composition, chains: &[Chain], place: &Place) -> Error {
+    fn told(self, story: &Composition, chains: &[Chain], place: Option<&Place>) -> Error {
+        let Some(place) = place else { return bad(1, "expected people who can be where they start".into()) };
         let what = format!("'{}' cannot be there seen from '{}'", place.who.text, place.seen_from.text);
         match self {
             Self::Contradiction => bad(place.line, format!("{what}: it contradicts what was said before")),
+            Self::TooFar => bad(place.line, format!("{what}: that is too far from what else holds")),
             Self::Broken(b) => {
                 let (name, when) = (&story.roles[b.at.role].name, chains[b.at.role].name(b.at.frame));
                 let found = format!("{:.3} {} per frame", b.found, b.unit);
@@ -160,7 +164,7 @@ fn attempt(story: &Composition, threads: &[Thread], bonds: &[Vec<Bond>]) -> std:
     let web = Web::new(threads.to_vec(), &all).map_err(|_| Failure::Contradiction)?;
     let mut handles = anchors(story, threads, bonds);
     let deform = |handles: &[Handle]| web.hold(handles).and_then(|hold| hold.solve(handles));
-    let mut deformed = deform(&handles).ok_or(Failure::Contradiction)?;
+    let mut deformed = deform(&handles).ok_or(Failure::TooFar)?;
     let ends = threads.iter().enumerate().flat_map(|(role, t)| [(role, 0), (role, t.path.len() - 1)]);
     let met = bonds.iter().flat_map(|b| [b[0].a, b[b.len() - 1].a]);
     let uneven = |&(role, frame): &(usize, usize)| {
@@ -176,7 +180,7 @@ fn attempt(story: &Composition, threads: &[Thread], bonds: &[Vec<Bond>]) -> std:
             Handle { role, frame, at: None, tick }
         };
         handles.extend(marks.into_iter().map(whole));
-        deformed = deform(&handles).ok_or(Failure::Contradiction)?;
+        deformed = deform(&handles).ok_or(Failure::TooFar)?;
     }
     match web.strain(&deformed).broken(&limits(story)) {
         Some(broken) => Err(Failure::Broken(broken)),

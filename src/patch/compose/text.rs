@@ -6,8 +6,9 @@ use std::ops::Range;
 use glam::Vec2;
 use toml::Spanned;
 
+use super::moment::Names;
 use super::row::{self, Row};
-use super::story::{Clip, Composition, Moment, Piece, Place, Role, Touches, bad};
+use super::story::{Clip, Composition, Piece, Place, Role, Touches, bad};
 use crate::Result;
 use crate::deform::Limits;
 use crate::geom::Ground;
@@ -15,8 +16,10 @@ use crate::motion::BodyPart;
 
 /// Largest number of people, after rows are laid out.
 pub(super) const MOST_PEOPLE: usize = 64;
+/// Most clips that one plays.
+const MOST_CLIPS: usize = 64;
 /// Largest coordinate or time, metres or seconds.
-const LARGEST: f32 = 1e4;
+pub(super) const LARGEST: f32 = 1e4;
 
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -191,8 +194,8 @@ impl Reader<'_> {
         if name.is_empty() || name.contains(['.', '@']) {
             return Err(bad(line, format!("expected a role's name without '.' and '@', found '{name}'")));
         }
-        if plays.is_empty() {
-            return Err(bad(line, format!("role {name}: expected at least one clip, found none")));
+        if !(1..=MOST_CLIPS).contains(&plays.len()) {
+            return Err(bad(line, format!("role {name}: expected 1 to {MOST_CLIPS} clips, found {}", plays.len())));
         }
         let find = |clip: &String| {
             let found = clips.iter().position(|c| &c.name == clip);
@@ -262,66 +265,6 @@ impl Reader<'_> {
         }
         let roles = roles.iter().map(|name| names.role(name, line)).collect::<Result<Vec<_>>>()?;
         Ok(Row { roles, count, spacing, delay, line })
-    }
-}
-
-/// What moments may name.
-struct Names<'a> {
-    roles: &'a [Role],
-    clips: &'a [Clip],
-}
-
-impl Names<'_> {
-    fn role(&self, name: &str, line: usize) -> Result<usize> {
-        let found = self.roles.iter().position(|r| r.name == name);
-        found.ok_or_else(|| bad(line, format!("expected the name of a role, found '{name}'")))
-    }
-
-    /// `role`, `role.clip`, `role@seconds`, `role.clip@seconds`.
-    fn moment(&self, text: &str, line: usize) -> Result<Moment> {
-        let (who, seconds) = match text.split_once('@') {
-            Some((who, seconds)) => (who, Some(self.seconds(seconds, text, line)?)),
-            None => (text, None),
-        };
-        let (name, clip) = who.split_once('.').map_or((who, None), |(name, clip)| (name, Some(clip)));
-        let role = self.role(name, line)?;
-        let part = clip.map(|clip| self.part(role, clip, line)).transpose()?;
-        Ok(Moment { role, part, seconds, text: text.to_owned() })
-    }
-
-    fn seconds(&self, seconds: &str, whole: &str, line: usize) -> Result<f32> {
-        let number = seconds.parse().ok().filter(|s| (0.0..=LARGEST).contains(s));
-        number.ok_or_else(|| bad(line, format!("expected seconds after '@', found '{whole}'")))
-    }
-
-    /// Where in what the role plays a clip comes; it must come once.
-    fn part(&self, role: usize, clip: &str, line: usize) -> Result<usize> {
-        let Role { name, plays, .. } = &self.roles[role];
-        let mut at = (0..plays.len()).filter(|&i| self.clips[plays[i]].name == clip);
-        match (at.next(), at.next()) {
-            (Some(part), None) => Ok(part),
-            (None, _) => Err(bad(line, format!("expected a clip that {name} plays, found '{clip}'"))),
-            (Some(_), Some(_)) => {
-                let expected = format!("expected a clip that {name} plays once, found '{clip}', played more often");
-                Err(bad(line, format!("{expected}; say when by '{name}@seconds'")))
-            }
-        }
-    }
-
-    /// `role.left_hand`, `role.right_hand`, `role.torso`, `role.head`.
-    fn body_part(&self, text: &str, line: usize) -> Result<(usize, BodyPart)> {
-        let (name, part) = text.split_once('.').unwrap_or((text, ""));
-        let part = match part {
-            "left_hand" => BodyPart::LeftHand,
-            "right_hand" => BodyPart::RightHand,
-            "torso" => BodyPart::Torso,
-            "head" => BodyPart::Head,
-            _ => {
-                let expected = "expected a role's left_hand, right_hand, torso or head";
-                return Err(bad(line, format!("{expected} ('ann.left_hand'), found '{text}'")));
-            }
-        };
-        Ok((self.role(name, line)?, part))
     }
 }
 
