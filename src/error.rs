@@ -26,6 +26,9 @@ pub enum Error {
         /// What was expected and what was found.
         problem: String,
     },
+    /// Whoever asked for it did not want it any more.
+    #[error("stopped")]
+    Stopped,
 }
 
 impl Error {

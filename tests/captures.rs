@@ -6,11 +6,14 @@ mod mocap;
 
 use std::path::Path;
 
+use crowdquilt::geom::Capsule;
+use crowdquilt::motion::retarget::{RestRig, match_rig, rest_turns};
 use crowdquilt::motion::take::ImportOptions;
 use crowdquilt::motion::{
     Clip, Foot, Motion, canonical, contacts, gait, import, joint, limits, plants, pose, reach, retarget,
 };
 use crowdquilt::patch::{PatchSet, cut_folder};
+use glam::{Quat, Vec3};
 
 fn load(folder: &Path, take: &str) -> Clip {
     let row = mocap::rows(folder).into_iter().find(|r| r.take == take).unwrap();
@@ -153,25 +156,107 @@ fn hands_meet_in_the_handshake() {
     assert_eq!(found.len(), 1, "{found:?}");
 }
 
-/// How far the palms of the handshake are from touching, before and after the arms are bent: mean and most, metres.
+/// Hands of a person, left and right, as capsules at every frame: on any bones, at 30 frames a second.
+type Hands = [Vec<Capsule>; 2];
+
+const HANDS: [usize; 2] = [joint::LEFT_HAND, joint::RIGHT_HAND];
+
+fn hand(joint: usize, at: (Vec3, Quat), size: f32) -> Capsule {
+    let tip = canonical().joints[joint].tip.unwrap() * size;
+    Capsule { a: at.0, b: at.0 + at.1 * tip, radius: 0.035 * size }
+}
+
+fn captured_hands(clip: &Clip) -> Hands {
+    let rest = RestRig::of(&clip.skeleton);
+    let found = match_rig(&rest).unwrap();
+    let (joints, turns) = (found.joints.map(|j| j.unwrap_or(0)), rest_turns(&rest, &found));
+    let bone = |a: usize, b: usize| rest.places[joints[a]].distance(rest.places[joints[b]]);
+    use joint::*;
+    let legs = bone(LEFT_UP_LEG, LEFT_LEG) + bone(LEFT_LEG, LEFT_FOOT);
+    let legs = legs + bone(RIGHT_UP_LEG, RIGHT_LEG) + bone(RIGHT_LEG, RIGHT_FOOT);
+    let size = 0.5 * legs / 0.83;
+    let mut globals = Vec::new();
+    HANDS.map(|joint| {
+        let mut at = |frame: usize| {
+            clip.globals(frame, &mut globals);
+            let (wrist, turn) = globals[joints[joint]];
+            hand(joint, (wrist, turn * turns[joint]), size)
+        };
+        (0..clip.frames()).step_by((clip.fps / 30.0) as usize).map(&mut at).collect()
+    })
+}
+
+fn hands(motion: &Motion) -> Hands {
+    let mut globals = Vec::new();
+    HANDS.map(|joint| {
+        let mut at = |frame: usize| {
+            motion.globals(frame, &mut globals);
+            hand(joint, globals[joint], 1.0)
+        };
+        (0..motion.len()).map(&mut at).collect()
+    })
+}
+
+/// How much farther apart hands are than they were, palms and surfaces, at all frames at which at most 3 cm were
+/// between them.
+fn farther(was: [&Hands; 2], is: [&Hands; 2]) -> Vec<f32> {
+    let palm = |h: &Capsule| h.a.midpoint(h.b);
+    let measure = |a: &Capsule, b: &Capsule| [palm(a).distance(palm(b)), a.between(b).length() - a.radius - b.radius];
+    let mut found = Vec::new();
+    for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        for f in 0..is[0][i].len().min(is[1][j].len()) {
+            let (was, is) = (measure(&was[0][i][f], &was[1][j][f]), measure(&is[0][i][f], &is[1][j][f]));
+            found.extend((was[1] <= 0.03).then_some((is[0] - was[0]).max(is[1] - was[1])));
+        }
+    }
+    found
+}
+
+/// The acceleration that palms stay below for 99 of 100 frames, m/s2.
+fn jolt(motions: &[Motion]) -> f32 {
+    let palms = motions.iter().flat_map(|m| HANDS.map(|hand| contacts::palm_trajectory(m, hand)));
+    let of = |p: Vec<Vec3>| p.windows(3).map(|p| (p[2] - 2.0 * p[1] + p[0]).length() * 900.0).collect::<Vec<f32>>();
+    percentile(palms.flat_map(of).collect(), 99)
+}
+
+/// Hands that touch in captures of pairs are within 2 cm of as near each other on bodies of another size.
 #[test]
-fn the_handshake_still_touches_on_other_bodies() {
+fn hands_of_pairs_are_as_near_each_other_as_captured() {
+    let Some(folder) = mocap::folder() else { return };
+    let rows: Vec<String> = mocap::rows(&folder).into_iter().map(|r| r.take).collect();
+    for [one, other] in [["18", "19"], ["60", "61"]] {
+        for take in rows.iter().filter_map(|t| t.strip_prefix(one)) {
+            let clips = [load(&folder, &format!("{one}{take}")), load(&folder, &format!("{other}{take}"))];
+            let was = clips.each_ref().map(captured_hands);
+            let of = |motions: &[Motion]| farther([&was[0], &was[1]], [&hands(&motions[0]), &hands(&motions[1])]);
+            // Alone, nobody minds the other's hands.
+            let alone = clips.each_ref().map(|clip| retarget::to_canonical(clip).unwrap());
+            let moved = retarget::take(&clips).unwrap();
+            let (before, after) = (of(&alone), of(&moved));
+            let most = |off: &[f32]| percentile(off.to_vec(), 100);
+            let (frames, before, after) = (after.len(), most(&before), most(&after));
+            println!(
+                "{one}{take}: {frames} frames, hands farther apart by up to {before:.3} m; restored: {after:.3} m"
+            );
+            assert!(frames >= 20 && after < 0.02, "{one}{take}: {after}");
+            let (rough, smooth) = (jolt(&moved), jolt(&alone));
+            println!("{one}{take}: hands accelerate by {rough:.1} m/s2, alone {smooth:.1}");
+            assert!(rough < 1.15 * smooth + 5.0, "{one}{take}: {rough} instead of {smooth} m/s2");
+        }
+    }
+}
+
+/// What a take file says about hands goes further: palms touch, whatever the capture's bones say.
+#[test]
+fn hands_that_a_take_says_touch_do() {
     let Some(folder) = mocap::folder() else { return };
     let mut pair = retarget::take(&[load(&folder, "18_01"), load(&folder, "19_01")]).unwrap();
     let found = contacts::detect(&pair, &contacts::ContactOptions::default());
-    let error = |pair: &[Motion]| {
-        let misses = reach::misses(pair, &found[0]);
-        (misses.iter().sum::<f32>() / misses.len() as f32, misses.iter().copied().fold(0.0, f32::max))
-    };
-    let before = error(&pair);
     reach::keep(&mut pair, &found);
-    let after = error(&pair);
-    println!(
-        "handshake: palms miss by {:.4} m in the mean, {:.4} at most; kept: {:.4}, {:.4}",
-        before.0, before.1, after.0, after.1
-    );
-    assert!(before.1 > 0.03, "{before:?}");
-    assert!(after.0 < 0.002 && after.1 < 0.01, "{after:?}");
+    let misses = reach::misses(&pair, &found[0]);
+    let (mean, most) = (misses.iter().sum::<f32>() / misses.len() as f32, percentile(misses.clone(), 100));
+    println!("handshake: palms miss by {mean:.4} m in the mean, {most:.4} at most");
+    assert!(mean < 0.002 && most < 0.01, "{misses:?}");
 }
 
 /// Captures and samples keep to the limits of joints, but for a few frames of hands and rigs that rest oddly.
@@ -193,7 +278,8 @@ fn captures_rarely_exceed_the_limits_of_joints() {
     }
     let (middle, most) = (percentile(shares.clone(), 50), percentile(shares, 100));
     println!("limits: median {:.3} % of joint frames beyond, most {:.2} %", 100.0 * middle, 100.0 * most);
-    assert!(middle < 0.005 && most < 0.06, "{middle} {most}");
+    // The most is 141_16, whose knees were captured bent sideways by up to 32 degrees.
+    assert!(middle < 0.005 && most < 0.07, "{middle} {most}");
 }
 
 #[test]

@@ -279,6 +279,27 @@ fn a_foot_in_the_floor() {
     fails(|c| shift_root(c, STAND, Vec3::NEG_Y * 0.05), &["foot below the floor"]);
 }
 
+/// Bends a joint by some degrees about an axis, slowly, so that nothing else is wrong with it.
+fn bend_slowly(crowd: &mut Crowd, character: usize, joint: usize, axis: Vec3, most: f32) {
+    for (i, pose) in crowd.characters[character].rotations.chunks_mut(JOINT_COUNT).enumerate() {
+        let bend = (i as f32 / 60.0).min(1.0) * most.to_radians();
+        pose[joint] = Quat::from_axis_angle(axis, bend) * pose[joint];
+    }
+}
+
+#[test]
+fn a_knee_bent_backwards() {
+    // It takes the foot along.
+    let fault = |c: &mut Crowd| bend_slowly(c, SHAKER, joint::LEFT_LEG, Vec3::NEG_X, 80.0);
+    fails(fault, &["planted foot slides", "joint further beyond its limits"]);
+}
+
+#[test]
+fn an_elbow_bent_backwards() {
+    let fault = |c: &mut Crowd| bend_slowly(c, WALKER, joint::LEFT_FORE_ARM, Vec3::Y, 50.0);
+    fails(fault, &["joint further beyond its limits"]);
+}
+
 #[test]
 fn a_step_out_of_the_region() {
     let fault = |c: &mut Crowd| {

@@ -13,6 +13,7 @@ from crowdquilt._core import Clip, Crowd, CrowdquiltError, PatchSet
 
 SLIDE = 0.10  # metres that a planted foot may move in a good capture
 BELOW = 0.05  # metres that a foot may be below the floor at one frame in a hundred
+TURNED = 60  # degrees that a joint may be beyond what people can do: captures of skin and cloth exaggerate
 
 
 @dataclass(frozen=True)
@@ -106,6 +107,9 @@ def quality_warnings(quality: dict[str, Any]) -> list[str]:
         warnings.append(f"a planted foot slides {slide:.2f} m over the ground")
     if quality["below_floor_p99_m"] > BELOW:
         warnings.append(f"feet are {quality['below_floor_p99_m']:.2f} m below the floor that they stand on")
+    beyond, joint, time = quality["joint_excess_deg"]
+    if beyond > TURNED:
+        warnings.append(f"{joint} turns {beyond:.0f} degrees further than people can, at {time:.2f} s")
     return warnings
 
 

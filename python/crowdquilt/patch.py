@@ -1,6 +1,45 @@
-"""Motion patches: pieces of one or more people's motion with ports, cut out of takes."""
+"""Motion patches: pieces of one or more people's motion with ports, cut out of captures."""
 
-from crowdquilt._core import Kind, PatchSet, Role
-from crowdquilt._core import cut_patches as cut
+from __future__ import annotations
 
-__all__ = ["Kind", "PatchSet", "Role", "cut"]
+from os import PathLike
+
+from crowdquilt._core import (
+    Component,
+    Connectivity,
+    GroupLinks,
+    Kind,
+    Link,
+    Made,
+    PatchSet,
+    Role,
+    Steering,
+    Take,
+    connectivity,
+)
+from crowdquilt._core import kind_capsules as capsules
+from crowdquilt._core import kind_positions as positions
+from crowdquilt._core import make_patches as make
+
+__all__ = [
+    "Component",
+    "Connectivity",
+    "GroupLinks",
+    "Kind",
+    "Link",
+    "Made",
+    "PatchSet",
+    "Role",
+    "Steering",
+    "Take",
+    "capsules",
+    "connectivity",
+    "cut",
+    "make",
+    "positions",
+]
+
+
+def cut(source: str | PathLike[str], captures: str | PathLike[str] | None = None) -> PatchSet:
+    """Make the patch set of captures; see `make`, which also tells how it came about."""
+    return make(source, captures).set

@@ -1,4 +1,4 @@
-"""The local server of the viewer: the built studio, one crowd and its report, on the loopback address only."""
+"""The local server of the viewer, on the loopback address only: the built studio, a crowd and its report, or a set."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
 from crowdquilt import check, report
-from crowdquilt._core import Crowd, CrowdquiltError
+from crowdquilt._core import Crowd, CrowdquiltError, PatchSet
 
 STUDIO = Path(__file__).parent / "studio_dist"
 HOST = "127.0.0.1"
@@ -30,7 +30,8 @@ FRESH = {"Cache-Control": "no-store"}
 
 def app(crowd: Path, opened: Callable[[], None] | None = None) -> Starlette:
     """The server's routes; `opened` is called once it listens."""
-    Crowd.load(crowd)  # a bad file is told here, not in the browser
+    is_set = holds_set(crowd)
+    (PatchSet if is_set else Crowd).load(crowd)  # a bad file is told here, not in the browser
     if not (STUDIO / "index.html").is_file():
         raise CrowdquiltError(f"{STUDIO}: the built studio is not there; `make studio` builds it")
 
@@ -39,6 +40,8 @@ def app(crowd: Path, opened: Callable[[], None] | None = None) -> Starlette:
         return Response(data, media_type="application/octet-stream", headers=FRESH)
 
     async def report_file(_request: Request) -> Response:
+        if is_set:
+            return Response("a patch set has no report", status_code=404)
         data = await run_in_threadpool(report_of, crowd)
         return Response(data, media_type="application/json", headers=FRESH)
 
@@ -58,6 +61,12 @@ def app(crowd: Path, opened: Callable[[], None] | None = None) -> Starlette:
         middleware=[Middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])],
         lifespan=lifespan,
     )
+
+
+def holds_set(path: Path) -> bool:
+    """Whether a file is a patch set, told by its first bytes."""
+    with path.open("rb") as file:
+        return file.read(7) == b"CQPATCH"
 
 
 def report_of(crowd: Path) -> bytes:

@@ -6,11 +6,13 @@
 use pyo3::prelude::*;
 
 mod check;
+mod connectivity;
 mod error;
 mod export;
 mod motion;
 mod numbers;
 mod patch;
+mod progress;
 mod refine;
 mod samples;
 mod stage;
@@ -21,13 +23,17 @@ mod _core {
     #[pymodule_export]
     use super::check::{Report, Row, Summary, check_crowd, summary};
     #[pymodule_export]
+    use super::connectivity::{
+        Component, Connectivity, GroupLinks, Link, Steering, connectivity, kind_capsules, kind_positions,
+    };
+    #[pymodule_export]
     use super::error::CrowdquiltError;
     #[pymodule_export]
     use super::export::{export_bvh, export_glb};
     #[pymodule_export]
     use super::motion::{Clip, check_take, import_presets, load_clip, take_distances};
     #[pymodule_export]
-    use super::patch::{Kind, PatchSet, Role, cut_patches};
+    use super::patch::{Kind, Made, PatchSet, Role, Take, make_patches};
     #[pymodule_export]
     use super::refine::refine_crowd;
     #[pymodule_export]

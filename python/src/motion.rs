@@ -191,6 +191,9 @@ impl Clip {
         out.set_item("below_floor_m", q.penetration_worst)?;
         out.set_item("below_floor_p99_m", q.penetration_p99)?;
         out.set_item("pops_secs", q.pops)?;
+        let (joint, time) = (&canonical().joints[q.excess.joint].name, q.excess.frame as f32 / core::FPS);
+        out.set_item("joint_excess_deg", (q.excess.worst.to_degrees(), joint, time))?;
+        out.set_item("joint_excess_share", q.excess.share)?;
         Ok(out)
     }
 

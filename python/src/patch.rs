@@ -5,20 +5,143 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crowdquilt::motion::FPS;
+use crowdquilt::motion::collection::Collected;
 use crowdquilt::patch as core;
+use crowdquilt::patch::episode::{Event, EventKind};
 use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::error::{run, to_python};
 use crate::numbers::points2;
+use crate::progress::watched;
 
-/// Cut the patches of all take files (`*.take.json`) of `folder` into one set, with mirrored copies.
+/// Make a patch set of captures: a folder, an index (`.csv`), a take file (`.take.json`) or one capture.
 ///
-/// Captures are looked up in `captures` if given, else beside the take files.
+/// Takes without patches annotate themselves: events between people are found, and a few recurring poses at which
+/// patches begin and end. `captures` is a folder that captures are looked up in first. `threshold` is how near two poses
+/// of a group are (m), `groups` how many groups there are at most, `alone` how many patches of one person are kept,
+/// `touch_gap` how near surfaces touch (m), `near` how near people react to each other (m). `compose` are files
+/// (`*.compose.toml`) that compose patches by hand, or folders of them, besides those in the source folder. `progress` is called with
+/// what is being done and how much of it (0 to 1); it stops the work by returning False.
 #[pyfunction]
-#[pyo3(signature = (folder, captures=None))]
-pub fn cut_patches(py: Python<'_>, folder: PathBuf, captures: Option<PathBuf>) -> PyResult<PatchSet> {
-    run(py, || core::cut_folder(&folder, captures.as_deref())).map(|set| PatchSet(Arc::new(set)))
+#[pyo3(signature = (source, captures=None, *, threshold=None, groups=None, alone=None, touch_gap=None, near=None, compose=None, progress=None))]
+#[allow(clippy::too_many_arguments)]
+pub fn make_patches(
+    py: Python<'_>,
+    source: PathBuf,
+    captures: Option<PathBuf>,
+    threshold: Option<f32>,
+    groups: Option<usize>,
+    alone: Option<usize>,
+    touch_gap: Option<f32>,
+    near: Option<f32>,
+    compose: Option<Vec<PathBuf>>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Made> {
+    let mut options = core::MakeOptions { compose: compose.unwrap_or_default(), ..Default::default() };
+    options.cut.captures = captures;
+    let annotate = &mut options.annotate;
+    set(&mut annotate.boundaries.threshold, threshold, "threshold", 0.01..1.0)?;
+    set(&mut annotate.boundaries.most, groups, "groups", 1..21)?;
+    annotate.boundaries.groups = annotate.boundaries.groups.max(annotate.boundaries.most);
+    set(&mut annotate.alone.most, alone, "alone", 0..100_001)?;
+    set(&mut annotate.episodes.touch_gap, touch_gap, "touch_gap", 0.0..1.0)?;
+    set(&mut annotate.episodes.near, near, "near", 0.0..100.0)?;
+    let show = |py: Python<'_>, step: core::Step| {
+        let (what, share) = match step {
+            core::Step::Read(done, all) => ("reading captures", done as f32 / all.max(1) as f32),
+            core::Step::Find => ("finding events", 0.0),
+            core::Step::Cut => ("cutting", 0.0),
+        };
+        Ok((what, share).into_pyobject(py)?.into_any().unbind())
+    };
+    let (made, interrupt) = watched(py, progress, show, |report| core::make_with(&source, &options, report));
+    match interrupt {
+        None => Ok(Made(made?)),
+        Some(error) => Err(error),
+    }
+}
+
+/// Sets an option that was given, if it is in its range.
+fn set<T: PartialOrd + std::fmt::Debug>(
+    option: &mut T,
+    given: Option<T>,
+    name: &str,
+    range: std::ops::Range<T>,
+) -> PyResult<()> {
+    let Some(value) = given else { return Ok(()) };
+    if !range.contains(&value) {
+        let expected = format!("{name}: expected {:?} or more, below {:?}, found {value:?}", range.start, range.end);
+        return Err(PyValueError::new_err(expected));
+    }
+    *option = value;
+    Ok(())
+}
+
+/// A patch set, and how it came about.
+#[pyclass(frozen, module = "crowdquilt")]
+pub struct Made(core::Made);
+
+#[pymethods]
+impl Made {
+    /// The set.
+    #[getter]
+    fn set(&self) -> PatchSet {
+        PatchSet(Arc::new(self.0.set.clone()))
+    }
+
+    /// The takes: what was found in each.
+    #[getter]
+    fn takes(&self, py: Python<'_>) -> PyResult<Vec<Py<Take>>> {
+        (0..self.0.takes.len()).map(|i| Py::new(py, self.take(i))).collect()
+    }
+
+    /// The take files that say what was cut, as (name, JSON text): to be edited, and cut again. Takes of which nothing
+    /// was cut are left out.
+    fn take_files(&self) -> Vec<(String, String)> {
+        let file = |c: &Collected| (format!("{}.take.json", c.take.name), c.take.to_json());
+        self.0.takes.iter().filter(|c| !c.take.patches.is_empty()).map(file).collect()
+    }
+}
+
+impl Made {
+    fn take(&self, index: usize) -> Take {
+        let take = &self.0.takes[index].take;
+        let found = self.0.found_in.iter().position(|&i| i == index);
+        let events = found.zip(self.0.annotation.as_ref()).map_or(&[][..], |(k, a)| &a.found[k].events);
+        let event = |e: &Event| {
+            let kind = match e.kind {
+                EventKind::Contact => "contact",
+                EventKind::Proximity => "proximity",
+                EventKind::Synchronicity => "synchronicity",
+            };
+            (kind, e.people.clone(), e.begin as f32 / FPS, e.end as f32 / FPS)
+        };
+        Take {
+            name: take.name.clone(),
+            people: take.people.len(),
+            annotated: found.is_none(),
+            events: events.iter().map(event).collect(),
+            patches: take.patches.iter().map(|p| p.name.clone()).collect(),
+            together: self.0.together(index),
+            notes: self.0.notes(index),
+        }
+    }
+}
+
+/// What was found in a take: how many `people`; whether somebody had `annotated` it; its `events` as (kind, people,
+/// begin, end) in seconds; names of the `patches` cut from it; the share of its time within those of several people
+/// (`together`); `notes` on why nothing, or less than everything, came of it.
+#[pyclass(frozen, get_all, module = "crowdquilt")]
+pub struct Take {
+    name: String,
+    people: usize,
+    annotated: bool,
+    events: Vec<(&'static str, Vec<usize>, f32, f32)>,
+    patches: Vec<String>,
+    together: f32,
+    notes: Vec<String>,
 }
 
 /// One person's part in a patch kind: pose groups of `entry` and `exit`, the frame of the patch's clock at which it

@@ -2,18 +2,16 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::time::Duration;
 
 use crowdquilt::tiling as core;
 use numpy::PyArray2;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 
-use crate::error::{CrowdquiltError, internal, run, to_python};
+use crate::error::{CrowdquiltError, run, to_python};
 use crate::numbers::points2;
 use crate::patch::PatchSet;
+use crate::progress::watched;
 use crate::stage::Crowd;
 
 /// What to tile: a region with obstacles, a time, and wishes.
@@ -209,8 +207,11 @@ pub fn tile(
     let options = core::Options { method, seed, time_secs: time };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
     let pool = pool.map_err(|e| CrowdquiltError::new_err(format!("threads: {e}")))?;
-    let (found, interrupt) =
-        watched(py, progress, |report| pool.install(|| core::tile(&scene.0, &patches.0, &options, &mut |p| report(p))));
+    let show = |py: Python<'_>, p: core::Progress| Ok(Py::new(py, self::progress(&p))?.into_any());
+    let solve = |report: &(dyn Fn(core::Progress) -> bool + Sync)| {
+        pool.install(|| core::tile(&scene.0, &patches.0, &options, &mut |p| report(*p)))
+    };
+    let (found, interrupt) = watched(py, progress, show, solve);
     let found = outcome(py, found?)?;
     match interrupt {
         None => Ok(found),
@@ -221,60 +222,4 @@ pub fn tile(
             Err(error)
         }
     }
-}
-
-/// Runs `solve` on a thread of its own, so that this one can call Python back and hear Ctrl-C, which Python tells to
-/// its main thread only. Returns what was solved, and the exception that stopped it if one did.
-fn watched(
-    py: Python<'_>,
-    callback: Option<Py<PyAny>>,
-    solve: impl FnOnce(&(dyn Fn(&core::Progress) -> bool + Sync)) -> crowdquilt::Result<core::Outcome> + Send,
-) -> (PyResult<core::Outcome>, Option<PyErr>) {
-    let stop = AtomicBool::new(false);
-    let (sender, mut receiver) = mpsc::sync_channel::<core::Progress>(1);
-    std::thread::scope(|scope| {
-        let stop = &stop;
-        let worker = scope.spawn(move || {
-            solve(&|p| {
-                // A report that finds the one before not yet fetched is dropped: the next comes soon.
-                let _ = sender.try_send(*p);
-                !stop.load(Ordering::Relaxed)
-            })
-        });
-        let mut interrupt = None;
-        loop {
-            let listen = || receiver_wait(&mut receiver);
-            let heard = match py.detach(listen) {
-                Err(RecvTimeoutError::Disconnected) => break,
-                Err(RecvTimeoutError::Timeout) => Ok(true),
-                // Who has raised is not asked again.
-                Ok(report) if interrupt.is_none() => ask(py, callback.as_ref(), &report),
-                Ok(_) => Ok(true),
-            };
-            match heard.and_then(|go_on| py.check_signals().map(|()| go_on)) {
-                Ok(true) => {}
-                Ok(false) => stop.store(true, Ordering::Relaxed),
-                Err(error) => {
-                    stop.store(true, Ordering::Relaxed);
-                    interrupt.get_or_insert(error);
-                }
-            }
-        }
-        let found = match py.detach(|| worker.join()) {
-            Ok(result) => result.map_err(to_python),
-            Err(panic) => Err(internal(&*panic)),
-        };
-        (found, interrupt)
-    })
-}
-
-fn receiver_wait(receiver: &mut mpsc::Receiver<core::Progress>) -> Result<core::Progress, RecvTimeoutError> {
-    receiver.recv_timeout(Duration::from_millis(50))
-}
-
-/// Tells Python about the progress; anything but False means: go on.
-fn ask(py: Python<'_>, callback: Option<&Py<PyAny>>, report: &core::Progress) -> PyResult<bool> {
-    let Some(callback) = callback else { return Ok(true) };
-    let answer = callback.call1(py, (progress(report),))?;
-    Ok(!answer.bind(py).is(pyo3::types::PyBool::new(py, false)))
 }

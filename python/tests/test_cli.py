@@ -16,7 +16,7 @@ import crowdfile
 import crowdquilt as cq
 from conftest import crowdquilt
 
-COMMANDS = ["samples", "inspect", "patches", "tile", "check", "export", "plot", "view", "bench", "demo"]
+COMMANDS = ["samples", "inspect", "patches", "tile", "check", "export", "plot", "kinds", "view", "bench", "demo"]
 
 
 def test_help_names_every_command() -> None:

@@ -79,6 +79,7 @@ def test_figures_of_a_good_capture(tmp_path: Path, text: str) -> None:
     assert told["rig"] == "canonical" and told["foot_plants"] > 0
     assert told["foot_slide_median"] <= told["foot_slide"] < 0.05
     assert told["pops_secs"] == [] and told["below_floor_m"] < 0.03
+    assert told["joint_excess_deg"][0] < 1 and told["joint_excess_share"] == 0
     assert {"joints", "frames", "fps", "seconds", "height_m", "foot_slide", "warnings"} <= told.keys()
 
 

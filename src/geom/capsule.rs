@@ -15,8 +15,6 @@ pub struct Capsule {
 
 impl Capsule {
     /// How deep two capsules interpenetrate, metres; negative or zero if they do not (then no true distance).
-    ///
-    /// Nearest points of two segments after Ericson, "Real-Time Collision Detection", section 5.1.9.
     #[inline]
     pub fn penetration(&self, other: &Self) -> f32 {
         let apart = self.radius + other.radius;
@@ -27,7 +25,15 @@ impl Capsule {
         if between.length_squared() >= bound * bound {
             return 0.0;
         }
-        let r = self.a - other.a;
+        apart - self.between(other).length()
+    }
+
+    /// From the point of this axis that is nearest to the other's to the point of the other that is nearest to this.
+    ///
+    /// Nearest points of two segments after Ericson, "Real-Time Collision Detection", section 5.1.9.
+    #[inline]
+    pub fn between(&self, other: &Self) -> Vec3 {
+        let (d1, d2, r) = (self.b - self.a, other.b - other.a, self.a - other.a);
         let (a, e, f) = (d1.length_squared(), d2.length_squared(), d2.dot(r));
         let (b, c) = (d1.dot(d2), d1.dot(r));
         let denominator = a * e - b * b;
@@ -40,7 +46,7 @@ impl Capsule {
         } else {
             (s, t)
         };
-        apart - (self.a + d1 * s - other.a - d2 * t).length()
+        other.a + d2 * t - self.a - d1 * s
     }
 }
 

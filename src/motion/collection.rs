@@ -70,6 +70,7 @@ fn is_capture(path: &Path) -> bool {
 }
 
 fn collect_file(path: &Path) -> Result<Vec<Collected>> {
+    std::fs::metadata(path).map_err(|e| Error::io(path, e))?;
     if is_take(path) {
         return Ok(vec![Collected { origin: path.to_owned(), take: TakeFile::load(path)? }]);
     }

@@ -55,7 +55,8 @@ pub fn palm(globals: &[(Vec3, Quat)], hand: usize) -> Vec3 {
     globals[hand].0 + globals[hand].1 * (0.5 * tip)
 }
 
-fn palm_trajectory(motion: &Motion, hand: usize) -> Vec<Vec3> {
+/// The palm of a hand at every frame. O(frames).
+pub fn palm_trajectory(motion: &Motion, hand: usize) -> Vec<Vec3> {
     let mut globals = Vec::with_capacity(JOINT_COUNT);
     let at = |frame| {
         motion.globals(frame, &mut globals);

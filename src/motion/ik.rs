@@ -9,7 +9,8 @@ const POLE_PULL: f32 = 0.04;
 ///
 /// `hip`, `knee`, `end` are the limb's present global positions (m). The limb keeps its bend plane; `pole` (a global
 /// direction) says where the knee points, the more so the straighter the limb is, so that the knee of a limb that
-/// straightens and bends again does not flip. `stretch` in (0, 1] is the largest part of the limb's length that may be
+/// straightens and bends again does not flip; where it turns the plane, the upper bone twists with it, since knees and
+/// elbows are hinges. `stretch` in (0, 1] is the largest part of the limb's length that may be
 /// used, so that knees never lock.
 ///
 /// Returns the global rotations to apply, first to the upper bone and all below it, then to the lower bone
@@ -19,15 +20,34 @@ pub fn two_bone(hip: Vec3, knee: Vec3, end: Vec3, target: Vec3, pole: Vec3, stre
     let reach = (target - hip).length().max((upper - lower).abs() + 1e-4).min((upper + lower) * stretch);
     let along = (end - hip).normalize_or(Vec3::NEG_Y);
     let toward = (target - hip).normalize_or(along);
-    let bulge = (knee - hip).reject_from_normalized(along) + pole.reject_from_normalized(along) * POLE_PULL;
-    let side = (Quat::from_rotation_arc(along, toward) * bulge).reject_from_normalized(toward);
+    let bulge = (knee - hip).reject_from_normalized(along);
+    let pulled = bulge + pole.reject_from_normalized(along) * POLE_PULL;
+    let side = (Quat::from_rotation_arc(along, toward) * pulled).reject_from_normalized(toward);
     let side = side.try_normalize().unwrap_or_else(|| toward.any_orthonormal_vector());
     let foot = (upper * upper - lower * lower + reach * reach) / (2.0 * reach);
     let new_knee = hip + toward * foot + side * (upper * upper - foot * foot).max(0.0).sqrt();
     let new_end = hip + toward * reach;
     let swing = rotation_between(knee - hip, new_knee - hip);
+    let hinges = [(knee - hip).cross(end - knee), (new_knee - hip).cross(new_end - new_knee)];
+    let swing = twist((new_knee - hip) / upper.max(1e-6), swing * hinges[0], hinges[1], bulge.length_squared()) * swing;
     let bend = swing.inverse() * rotation_between(swing * (end - knee), new_end - new_knee) * swing;
     (swing, bend, new_end)
+}
+
+/// The turn about the upper bone (its direction) that brings the hinge's axis `from` to `to`, less of it the less the knee was off the
+/// line between the ends (`off` is the square of that distance): a straight limb's hinge has no direction to speak of.
+fn twist(bone: Vec3, from: Vec3, to: Vec3, off: f32) -> Quat {
+    // Of half the angle, without trigonometry: this runs for every limb of every frame.
+    let cosine = from.dot(to) + (from.length_squared() * to.length_squared()).sqrt();
+    let sine = from.cross(to).dot(bone);
+    let length = (sine * sine + cosine * cosine).sqrt();
+    if length < 1e-10 {
+        return Quat::IDENTITY;
+    }
+    // A knee that was bent backwards is turned over by the pole and not by a twist.
+    let forwards = (2.0 * cosine * cosine / (length * length)).min(1.0);
+    let weight = forwards * off / (off + POLE_PULL * POLE_PULL);
+    Quat::from_vec4((bone * sine * weight).extend(length + (cosine - length) * weight)).normalize()
 }
 
 fn rotation_between(from: Vec3, to: Vec3) -> Quat {
@@ -58,6 +78,23 @@ mod tests {
                 let side = (new_knee - hip) - foot * (new_knee - hip).dot(foot);
                 assert!(side.dot(swing * Vec3::Z) > 0.0, "knee bends backwards: {side}");
             }
+        }
+    }
+
+    #[test]
+    fn knees_stay_hinges_where_the_pole_turns_them() {
+        let (hip, knee, end) = (Vec3::ZERO, Vec3::new(0.0, -0.3, 0.25), Vec3::new(0.05, -0.35, -0.1));
+        for (pole, target) in [
+            (Vec3::X, Vec3::new(0.1, -0.4, 0.0)),
+            (Vec3::NEG_X, Vec3::new(-0.2, -0.2, -0.1)),
+            (Vec3::new(1.0, 0.0, 1.0), Vec3::new(0.02, -0.2, 0.05)),
+            (Vec3::Z, Vec3::new(-0.1, -0.3, -0.2)),
+        ] {
+            let (swing, _, _) = two_bone(hip, knee, end, target, pole, 0.999);
+            let moved = swing * (knee - hip);
+            let hinge = moved.cross(target - moved);
+            let off = (swing * (knee - hip).cross(end - knee)).angle_between(hinge);
+            assert!(off < 3f32.to_radians(), "{pole} {target}: the hinge is off by {} deg", off.to_degrees());
         }
     }
 

@@ -6,6 +6,7 @@
 //! captures, which measure joints of skin and cloth, rarely leave them: they catch flips, and are no anatomy.
 
 use std::f32::consts::PI;
+use std::sync::LazyLock;
 
 use glam::{Quat, Vec3};
 
@@ -111,16 +112,70 @@ fn clamp_swing(swing: Vec3, limit: &JointLimit) -> Vec3 {
 
 /// The rotation of a joint brought within its limits; the same where it is within them.
 pub fn clamp(joint: usize, rotation: Quat) -> Quat {
-    let Some(limit) = limit_of(joint) else { return rotation };
-    let (swing, twist) = split(rotation, &limit);
-    let (inside, turned) = (clamp_swing(swing, &limit), twist.clamp(limit.twist[0], limit.twist[1]));
-    if inside.distance(swing) < 1e-5 && turned == twist { rotation } else { join(inside, turned, &limit) }
+    let Some(Ready { limit, .. }) = &TABLE[joint] else { return rotation };
+    let (swing, twist) = split(rotation, limit);
+    let (inside, turned) = (clamp_swing(swing, limit), twist.clamp(limit.twist[0], limit.twist[1]));
+    if inside.distance(swing) < 1e-5 && turned == twist { rotation } else { join(inside, turned, limit) }
+}
+
+/// A joint's limits, made ready for quick tests.
+struct Ready {
+    limit: JointLimit,
+    /// Cosine of half the smallest of the limits.
+    smallest: f32,
+    /// Tangents of half the twist's limits.
+    twist: [f32; 2],
+}
+
+static TABLE: LazyLock<[Option<Ready>; JOINT_COUNT]> = LazyLock::new(|| {
+    std::array::from_fn(|joint| {
+        let limit = limit_of(joint)?;
+        let ends = [limit.swing[0], limit.swing[1], limit.twist];
+        let smallest = ends.as_flattened().iter().map(|v| v.abs()).fold(PI, f32::min);
+        Some(Ready { limit, smallest: (0.5 * smallest).cos(), twist: limit.twist.map(|t| (0.5 * t).tan()) })
+    })
+});
+
+/// True only if a rotation is within its joint's limits: quick, since most are, but false for some near them as well.
+fn is_well_within(joint: usize, rotation: Quat) -> bool {
+    let Some(ready) = &TABLE[joint] else { return true };
+    // Neither the swing nor the twist is larger than the whole turn.
+    rotation.w.abs() > ready.smallest || ready.holds(if rotation.w < 0.0 { -rotation } else { rotation })
+}
+
+impl Ready {
+    fn holds(&self, q: Quat) -> bool {
+        let along = q.xyz().dot(self.limit.axis);
+        let twist = (along * along + q.w * q.w).sqrt();
+        if twist == 0.0 || along < self.twist[0] * q.w || along > self.twist[1] * q.w {
+            return false;
+        }
+        let swing = (q * Quat::from_vec4((self.limit.axis * -along).extend(q.w))).xyz() / twist;
+        // No arc sine is larger than this polynomial.
+        let bound = swing * (2.0 + (PI - 2.0) * swing.length_squared());
+        let parts = [0, 1].map(|i| used(bound.dot(self.limit.across[i]), self.limit.swing[i]));
+        parts[0] * parts[0] + parts[1] * parts[1] < 1.0
+    }
 }
 
 /// By what angle a joint's rotation is beyond its limits, radians; 0 within them.
 pub fn excess(joint: usize, rotation: Quat) -> f32 {
+    if is_well_within(joint, rotation) {
+        return 0.0;
+    }
     let kept = clamp(joint, rotation);
     if kept == rotation { 0.0 } else { kept.angle_between(rotation) }
+}
+
+/// A joint's rotation, brought back towards its limits where it is beyond them by more than `allowed`, radians: what
+/// captures exceed the limits by, a change of them may exceed them by as well. Continuous in the rotation.
+pub fn hold_back(joint: usize, rotation: Quat, allowed: impl FnOnce() -> f32) -> Quat {
+    if is_well_within(joint, rotation) {
+        return rotation;
+    }
+    let kept = clamp(joint, rotation);
+    let (over, allowed) = (if kept == rotation { 0.0 } else { kept.angle_between(rotation) }, allowed());
+    if over <= allowed { rotation } else { kept.slerp(rotation, allowed / over) }
 }
 
 /// How a motion keeps to the limits.
@@ -128,6 +183,8 @@ pub fn excess(joint: usize, rotation: Quat) -> f32 {
 pub struct Excess {
     /// The joint that is farthest beyond.
     pub joint: usize,
+    /// At which frame.
+    pub frame: usize,
     /// By how much, radians.
     pub worst: f32,
     /// Share of all joints and frames that are beyond by more than a degree.
@@ -143,7 +200,7 @@ pub fn measure(motion: &Motion) -> Excess {
             let over = excess(joint, rotation);
             beyond += usize::from(over > degrees(1.0));
             if over > out.worst {
-                (out.joint, out.worst) = (joint, over);
+                (out.joint, out.frame, out.worst) = (joint, frame, over);
             }
         }
     }
@@ -190,9 +247,15 @@ mod tests {
             let once = clamp(joint, rotation);
             prop_assert!(once.is_normalized());
             prop_assert!(excess(joint, once) < 2e-3, "{}", excess(joint, once));
+            prop_assert!(!is_well_within(joint, rotation) || once == rotation);
             // The mirror image of a rotation is beyond the other side's limits by as much.
             let image = Quat::from_xyzw(rotation.x, -rotation.y, -rotation.z, rotation.w);
             prop_assert!((excess(mirror(joint), image) - excess(joint, rotation)).abs() < 2e-3);
+            // Held back, it is beyond them by what is allowed, and no farther than it was.
+            let (was, allowed) = (excess(joint, rotation), turn * 0.2);
+            let held = hold_back(joint, rotation, || allowed);
+            prop_assert!(held.angle_between(rotation) < (was - allowed).max(0.0) + 2e-3);
+            prop_assert!(was > allowed || held == rotation);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! How good a capture's motion is, as numbers: sliding feet, speeds and accelerations, feet in the ground, pops.
+//! How good a capture's motion is, as numbers: sliding feet, speeds and accelerations, feet in the ground, pops, joints turned too far.
 //!
 //! Measured on the capture's own joints, as imported; when feet are planted is told on the canonical skeleton.
 
@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::plants::speeds;
 use super::retarget::{RestRig, lowest, match_rig, to_canonical};
 use super::skeleton::joint::*;
-use super::{Clip, FPS, Foot, JointId, Plant};
+use super::{Clip, FPS, Foot, JointId, Plant, limits};
 use crate::Result;
 
 /// A foot plant and how far the foot slid in it.
@@ -42,6 +42,8 @@ pub struct Quality {
     pub penetration_p99: f32,
     /// Times at which the pose pops: some joint's acceleration is above [`POP`], seconds.
     pub pops: Vec<f32>,
+    /// How far joints are turned beyond what people can do, on the canonical skeleton.
+    pub excess: limits::Excess,
 }
 
 /// The worst of something: value, joint, time.
@@ -90,6 +92,7 @@ pub fn measure(clip: &Clip) -> Result<Quality> {
         speed: moved.speed,
         acceleration: moved.acceleration,
         pops: moved.pops,
+        excess: limits::measure(&motion),
     })
 }
 
@@ -182,6 +185,7 @@ mod tests {
     use super::*;
     use crate::motion::testing::walking;
     use crate::motion::{JOINT_COUNT, Motion, canonical};
+    use glam::Quat;
 
     fn clip_of(motion: &Motion) -> Clip {
         let mut clip = Clip {
@@ -214,11 +218,14 @@ mod tests {
         clip.root.iter_mut().enumerate().for_each(|(f, p)| p.x += 0.1 * f as f32 / FPS);
         clip.root[60].z += 1.0;
         clip.root[100].y -= 0.2;
+        clip.rotations[80 * JOINT_COUNT + LEFT_LEG] = Quat::from_rotation_x(-1.0);
         let q = measure(&clip).unwrap();
         assert!(q.slide_median.unwrap() > clean.slide_median.unwrap() + 0.01, "{q:?}");
         assert!(q.pops.iter().any(|t| (t - 2.0).abs() < 0.05), "{:?}", q.pops);
         assert!((q.acceleration.value - 2.0 * FPS * FPS).abs() < 200.0, "{:?}", q.acceleration);
         assert!((q.penetration_worst - 0.2).abs() < 0.03 && q.penetration_p99 < 0.03, "{q:?}");
+        assert!(clean.excess.worst < 0.01 && (q.excess.joint, q.excess.frame) == (LEFT_LEG, 80), "{q:?}");
+        assert!((q.excess.worst.to_degrees() - 47.0).abs() < 3.0, "{q:?}");
     }
 
     #[test]

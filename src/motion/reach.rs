@@ -106,7 +106,7 @@ fn on_body(palm: Vec3, part: BodyPart, globals: &[(Vec3, Quat)]) -> Vec3 {
 }
 
 /// Moves a palm by bending the arm; the hand keeps its direction in space.
-fn move_palm(motion: &mut Motion, frame: usize, hand: usize, by: Vec3) {
+pub(super) fn move_palm(motion: &mut Motion, frame: usize, hand: usize, by: Vec3) {
     if by.length() < 1e-4 {
         return;
     }

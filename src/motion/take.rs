@@ -285,6 +285,11 @@ impl TakeFile {
         }
     }
 
+    /// The text of the take file.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string_pretty(self).expect("plain data") + "\n"
+    }
+
     /// All problems: another format or version, no people, people who do not exist, times that are not finite,
     /// negative or end before they begin, patches without roles or with one person twice, props without size or held
     /// by people out of order.

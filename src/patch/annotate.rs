@@ -94,6 +94,20 @@ impl Annotation {
         }
     }
 
+    /// Why no patch of one person was cut from a take.
+    pub(super) fn why_no_piece(&self, take: usize) -> String {
+        let cuts: usize = self.boundaries.cuts[take].iter().map(Vec::len).sum();
+        let frames = self.found[take].frames.iter().copied().max().unwrap_or(0);
+        match (frames, cuts) {
+            (0 | 1, _) => format!("nothing to cut: expected motion, found {frames} frame"),
+            (_, 0 | 1) => format!(
+                "no patch of one person: expected two moments in a recurring pose (a step's mid-stance, or a rest on both \
+                 feet), found {cuts} in {frames} frames"
+            ),
+            _ => "no patch was kept: others lead to the same places, or its recurring poses lie too far apart".into(),
+        }
+    }
+
     /// The ports that the take's patches use.
     fn add_ports(&self, take: &mut TakeFile, index: usize) {
         let mut used: Vec<(usize, Cut)> = Vec::new();
@@ -104,10 +118,15 @@ impl Annotation {
         }
         used.sort_unstable();
         used.dedup();
-        let port = |(person, cut): (usize, Cut)| TakePort {
-            person,
-            time: seconds(cut.frame),
-            pose: self.names[cut.group].clone(),
+        let holds = |person: usize, time: f32| {
+            let mut held = take.props.iter().flat_map(|p| &p.held);
+            held.any(|h| h.person == person && h.begin <= time && time <= h.end)
+        };
+        let port = |(person, cut): (usize, Cut)| {
+            let (time, name) = (seconds(cut.frame), &self.names[cut.group]);
+            // Poses do not tell what hands hold, and only who holds the same may go on.
+            let pose = if holds(person, time) { format!("carry_{name}") } else { name.clone() };
+            TakePort { person, time, pose }
         };
         take.ports = used.into_iter().map(port).collect();
     }

@@ -60,7 +60,7 @@ pub fn cut(sources: &[Source], options: &CutOptions) -> Result<PatchSet> {
         }
     }
     if options.mirror {
-        add_mirrored(&mut set);
+        add_mirrored(&mut set, 0);
     }
     round(&mut set);
     match set.validate().into_iter().next() {
@@ -70,7 +70,7 @@ pub fn cut(sources: &[Source], options: &CutOptions) -> Result<PatchSet> {
 }
 
 /// Rounds rotations to what a file keeps, so that a set tiles alike before and after it was saved.
-fn round(set: &mut PatchSet) {
+pub(super) fn round(set: &mut PatchSet) {
     for fragment in set.kinds.iter_mut().flat_map(|k| &mut k.fragments) {
         fragment.motion.rotations.iter_mut().for_each(|q| *q = filed_rotation(*q));
     }
@@ -202,7 +202,7 @@ impl Cutter<'_> {
 }
 
 /// The motion with its first heading within half a turn.
-fn upright(mut motion: Motion) -> Motion {
+pub(super) fn upright(mut motion: Motion) -> Motion {
     let first = motion.path.headings[0];
     let turns = first - crate::geom::wrap_angle(first);
     motion.path.headings.iter_mut().for_each(|h| *h -= turns);
@@ -210,7 +210,7 @@ fn upright(mut motion: Motion) -> Motion {
 }
 
 /// Moves the patch so that the mean of all path points is the origin.
-fn centre(fragments: &mut [Fragment]) {
+pub(super) fn centre(fragments: &mut [Fragment]) {
     let points = || fragments.iter().flat_map(|f| &f.motion.path.points);
     let mean = points().sum::<Vec2>() / points().count().max(1) as f32;
     fragments.iter_mut().flat_map(|f| &mut f.motion.path.points).for_each(|p| *p -= mean);

@@ -1,16 +1,20 @@
 //! From captures to a patch set: takes are collected, their people imported and retargeted, those that nobody annotated
-//! annotate themselves, and all are cut.
+//! annotate themselves, all are cut, and patches composed by hand are made of them.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::PatchSet;
 use super::annotate::{AnnotateOptions, Annotation, annotate};
+use super::connectivity::connectivity;
 use super::cut::{CutOptions, Source, cut, load_take};
-use crate::Result;
+use super::mirror::MIRRORED;
+use super::{Fragment, PatchKind, PatchSet, compose};
 use crate::motion::Motion;
 use crate::motion::collection::{Collected, collect};
+use crate::{Error, Result};
 
 /// How a set is made.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,6 +23,8 @@ pub struct MakeOptions {
     pub cut: CutOptions,
     /// How takes without patches are annotated.
     pub annotate: AnnotateOptions,
+    /// Compose files (`*.compose.toml`), or folders of them, besides those in the collection's own folder.
+    pub compose: Vec<PathBuf>,
 }
 
 /// A set, and how it came about.
@@ -32,16 +38,44 @@ pub struct Made {
     pub annotation: Option<Annotation>,
     /// Indices into `takes` of those.
     pub found_in: Vec<usize>,
+    /// Names of kinds that were found but left out, because they lead where nobody can go on, or nobody comes from.
+    pub left_out: Vec<String>,
+}
+
+/// What is being done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Captures are read and retargeted, so many takes of so many.
+    Read(usize, usize),
+    /// Events and boundaries are looked for.
+    Find,
+    /// Patches are cut.
+    Cut,
 }
 
 /// The patch set of a folder, an index, a take file or a capture (see [`collect`]).
 ///
 /// # Errors
-/// As [`collect`], [`load_take`] and [`cut`].
+/// As [`collect`], [`load_take`], [`cut`] and [`compose::add`].
 pub fn make(path: &Path, options: &MakeOptions) -> Result<Made> {
+    make_with(path, options, &|_| true)
+}
+
+/// As [`make`]; `report` hears of every step, on any thread, and says whether to go on.
+///
+/// # Errors
+/// As [`make`]; stopped.
+pub fn make_with(path: &Path, options: &MakeOptions, report: &(dyn Fn(Step) -> bool + Sync)) -> Result<Made> {
+    let reach = |step: Step| if report(step) { Ok(()) } else { Err(Error::Stopped) };
     let mut takes = collect(path)?;
-    let load = |c: &Collected| load_take(&c.origin, &c.take, &options.cut);
+    let done = AtomicUsize::new(0);
+    let load = |c: &Collected| {
+        let motions = load_take(&c.origin, &c.take, &options.cut)?;
+        reach(Step::Read(done.fetch_add(1, Ordering::Relaxed) + 1, takes.len()))?;
+        Ok(motions)
+    };
     let mut motions = takes.par_iter().map(load).collect::<Result<Vec<Vec<Motion>>>>()?;
+    reach(Step::Find)?;
     let bare: Vec<usize> = (0..takes.len()).filter(|&i| takes[i].take.patches.is_empty()).collect();
     let annotation = (!bare.is_empty()).then(|| {
         let mut files: Vec<_> = bare.iter().map(|&i| takes[i].take.clone()).collect();
@@ -53,13 +87,94 @@ pub fn make(path: &Path, options: &MakeOptions) -> Result<Made> {
         }
         annotation
     });
+    reach(Step::Cut)?;
     let sources: Vec<Source> = takes
         .iter()
         .zip(motions)
         .map(|(c, motions)| Source { origin: c.origin.clone(), take: c.take.clone(), motions })
         .collect();
-    let set = cut(&sources, &options.cut)?;
-    Ok(Made { set, takes, annotation, found_in: bare })
+    let mut set = cut(&sources, &options.cut)?;
+    let own = path.is_dir().then(|| path.to_owned());
+    let compositions: Vec<PathBuf> = own.into_iter().chain(options.compose.iter().cloned()).collect();
+    compose::add(&mut set, &compositions, &sources, &options.cut)?;
+    let found: BTreeSet<&str> = bare.iter().flat_map(|&i| &takes[i].take.patches).map(|p| p.name.as_str()).collect();
+    let left_out = close(&mut set, |kind| found.contains(kind.name.trim_end_matches(MIRRORED)));
+    Ok(Made { set, takes, annotation, found_in: bare, left_out })
+}
+
+/// Leaves kinds out that lead out of, or into, the part of the set in which people can go on for ever, as long as they
+/// `may` be left out; their names.
+fn close(set: &mut PatchSet, may: impl Fn(&PatchKind) -> bool) -> Vec<String> {
+    let mut left_out = Vec::new();
+    loop {
+        let found = connectivity(set);
+        let Some(main) = found.components.iter().find(|c| c.main && c.lasting) else { return left_out };
+        let inside = |f: &Fragment| main.groups.contains(&f.entry_group) && main.groups.contains(&f.exit_group);
+        let before = set.kinds.len();
+        set.kinds.retain(|kind| {
+            let stays = kind.fragments.iter().all(inside) || !may(kind);
+            left_out.extend((!stays).then(|| kind.name.clone()));
+            stays
+        });
+        if set.kinds.len() == before {
+            drop_unused_groups(set);
+            return left_out;
+        }
+    }
+}
+
+fn drop_unused_groups(set: &mut PatchSet) {
+    let mut used = vec![false; set.groups.len()];
+    for f in set.kinds.iter().flat_map(|k| &k.fragments) {
+        used[f.entry_group as usize] = true;
+        used[f.exit_group as usize] = true;
+    }
+    let index: Vec<u32> = used.iter().scan(0, |next, &u| Some(std::mem::replace(next, *next + u32::from(u)))).collect();
+    for f in set.kinds.iter_mut().flat_map(|k| &mut k.fragments) {
+        f.entry_group = index[f.entry_group as usize];
+        f.exit_group = index[f.exit_group as usize];
+    }
+    let mut keep = used.into_iter();
+    set.groups.retain(|_| keep.next().unwrap_or(false));
+}
+
+impl Made {
+    /// How much of a take's time lies within its patches of several people, 0 to 1: from the first entry to the last exit
+    /// of each.
+    pub fn together(&self, take: usize) -> f32 {
+        let Some(k) = self.found_in.iter().position(|&i| i == take) else { return 0.0 };
+        let Some(annotation) = &self.annotation else { return 0.0 };
+        let frames = annotation.found[k].frames.iter().copied().max().unwrap_or(0);
+        let mut covered = vec![false; frames];
+        for patch in annotation.boundaries.patches.iter().filter(|p| p.take == k) {
+            let first = patch.spans.iter().map(|s| s.entry.frame).min().unwrap_or(0);
+            let last = patch.spans.iter().map(|s| s.exit.frame).max().unwrap_or(0);
+            covered[first..=last].fill(true);
+        }
+        covered.iter().filter(|c| **c).count() as f32 / frames.max(1) as f32
+    }
+
+    /// Why nothing, or less than everything, came of a take that annotated itself; empty where all went well.
+    pub fn notes(&self, take: usize) -> Vec<String> {
+        let Some(k) = self.found_in.iter().position(|&i| i == take) else { return Vec::new() };
+        let Some(annotation) = &self.annotation else { return Vec::new() };
+        let mut notes: Vec<String> = Vec::new();
+        let people = self.takes[take].take.people.len();
+        notes.extend(annotation.found[k].why_nothing().filter(|_| people > 1));
+        for lost in annotation.boundaries.unbounded.iter().filter(|u| u.take == k) {
+            let event = &annotation.found[k].events[lost.event];
+            notes.push(format!("no patch of the event in frames {} to {}: {}", event.begin, event.end, lost.reason));
+        }
+        let idle = self.takes[take].take.props.iter().filter(|p| p.held.is_empty());
+        notes.extend(idle.map(|p| format!("prop {}: expected somebody who holds it, found nobody", p.name)));
+        let own = self.takes[take].take.patches.iter().filter(|p| self.left_out.contains(&p.name));
+        let left_out = own.map(|p| format!("{} is left out: nothing leads on from it, or up to it", p.name));
+        notes.extend(left_out);
+        if self.takes[take].take.patches.is_empty() {
+            notes.push(annotation.why_no_piece(k));
+        }
+        notes
+    }
 }
 
 /// The patch set of a folder (see [`make`]); captures are looked up in `captures` if given.

@@ -6,6 +6,9 @@ use crate::motion::mirror;
 /// The label of kinds that are their own mirror image, of which no copy is made.
 pub(super) const SYMMETRIC: &str = "symmetric";
 
+/// What the names of mirrored copies end with.
+pub(super) const MIRRORED: &str = "-mirror";
+
 /// The kind seen in a mirror, called `NAME-mirror`; its ports' pose groups swap sides (`walk_left`, `walk_right`)
 /// and are added to `groups` where they are new.
 pub fn mirrored(kind: &PatchKind, groups: &mut Vec<PoseGroup>) -> PatchKind {
@@ -25,7 +28,7 @@ pub fn mirrored(kind: &PatchKind, groups: &mut Vec<PoseGroup>) -> PatchKind {
         ..p.clone()
     };
     PatchKind {
-        name: format!("{}-mirror", kind.name),
+        name: format!("{}{MIRRORED}", kind.name),
         fragments: fragments.collect(),
         labels: kind.labels.clone(),
         contacts: kind.contacts.iter().map(|c| Contact { a: touch(c.a), b: touch(c.b), ..*c }).collect(),
@@ -35,9 +38,10 @@ pub fn mirrored(kind: &PatchKind, groups: &mut Vec<PoseGroup>) -> PatchKind {
     }
 }
 
-/// Adds the mirrored copy of every kind that is not labelled `symmetric`, after the kinds themselves.
-pub(super) fn add_mirrored(set: &mut PatchSet) {
-    let originals = set.kinds.iter().filter(|k| !k.labels.iter().any(|l| l == SYMMETRIC));
+/// Adds the mirrored copy of every kind from number `first` on that is not labelled `symmetric`, after the kinds
+/// themselves.
+pub(super) fn add_mirrored(set: &mut PatchSet, first: usize) {
+    let originals = set.kinds[first..].iter().filter(|k| !k.labels.iter().any(|l| l == SYMMETRIC));
     let copies: Vec<PatchKind> = originals.map(|kind| mirrored(kind, &mut set.groups)).collect();
     set.kinds.extend(copies);
 }

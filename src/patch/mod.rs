@@ -3,6 +3,8 @@
 pub mod annotate;
 pub mod boundaries;
 pub mod boundary;
+pub mod compose;
+pub mod connectivity;
 mod cut;
 mod cut_props;
 #[cfg(test)]
@@ -20,7 +22,7 @@ pub(crate) use file::{filed_rotation, pack_rotation, unpack_rotation};
 pub(crate) use speed::{fastest_turns, turn_between};
 
 pub use cut::{CutOptions, Source, cut, load_take};
-pub use make::{Made, MakeOptions, cut_folder, make};
+pub use make::{Made, MakeOptions, Step, cut_folder, make, make_with};
 pub use mirror::mirrored;
 pub use prop::{PatchProp, PropHold};
 pub use set::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};

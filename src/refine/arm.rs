@@ -1,12 +1,13 @@
 //! Hands led by their arms: what brings hands together and onto boxes.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use super::Body;
 use crate::motion::JOINT_COUNT;
 use crate::motion::ik::two_bone;
+use crate::motion::limits::{excess, hold_back};
 
-/// Moves a hand that keeps its orientation, arm and fore-arm following.
+/// Moves a hand that keeps its orientation, arm and fore-arm following as far as their joints turn.
 pub(super) fn move_hand(body: &mut Body, index: usize, hand: usize, shift: Vec3) {
     let mut globals = Vec::new();
     body.globals(index, &mut globals);
@@ -17,9 +18,11 @@ pub(super) fn move_hand(body: &mut Body, index: usize, hand: usize, shift: Vec3)
     let (swing, bend, _) = two_bone(globals[arm].0, globals[elbow].0, globals[hand].0, target, pole, 0.999);
     let (upper, fore) = (swing * globals[arm].1, swing * bend * globals[elbow].1);
     let pose = &mut body.rotations[index * JOINT_COUNT..(index + 1) * JOINT_COUNT];
-    pose[arm] = (globals[shoulder].1.inverse() * upper).normalize();
-    pose[elbow] = (upper.inverse() * fore).normalize();
-    pose[hand] = (fore.inverse() * globals[hand].1).normalize();
+    let mut turn =
+        |joint: usize, to: Quat| pose[joint] = hold_back(joint, to.normalize(), || excess(joint, pose[joint]));
+    turn(arm, globals[shoulder].1.inverse() * upper);
+    turn(elbow, upper.inverse() * fore);
+    turn(hand, fore.inverse() * globals[hand].1);
 }
 
 /// How much of its shift a hand keeps `away` frames outside of the time over which it is led, for `frames` frames.

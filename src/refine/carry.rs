@@ -3,13 +3,15 @@
 //! At a stitch the two captures differ a little in pose, height and speed. Either side takes a share of each
 //! difference, in value and in rate, and fades it out by a cubic over a short window, so that the result is continuous
 //! and smooth (C1) and only the neighbourhood of the stitch changes. People who act alone take it all where they meet
-//! a patch of several: what people do together stays exactly as captured.
+//! a patch of several: what people do together stays exactly as captured. A blend turns no joint further beyond what
+//! people can do than the captures that it blends.
 
 use glam::{Quat, Vec3};
 
 use super::{Body, Segment};
 use crate::geom::Ground;
-use crate::motion::JOINT_COUNT;
+use crate::motion::limits::{excess, hold_back};
+use crate::motion::{JOINT_COUNT, fade};
 
 /// Frames over which a difference is faded on either side of a stitch, and where one side takes all of it.
 const BLEND_FRAMES: i32 = 10;
@@ -61,7 +63,8 @@ impl Pose {
         // Where speeds differ so much that the hips would leave the path, nearness to the path goes first.
         self.root += offset(JOINT_COUNT).clamp_length_max(MAX_SHIFT);
         for (i, q) in self.rotations.iter_mut().enumerate() {
-            *q = (Quat::from_scaled_axis(offset(i)) * *q).normalize();
+            let blended = (Quat::from_scaled_axis(offset(i)) * *q).normalize();
+            *q = hold_back(i, blended, || stitch.excess[i].max(excess(i, *q)));
         }
     }
 }
@@ -95,6 +98,8 @@ struct Stitch {
     window_after: i32,
     difference: Offset,
     rate: Offset,
+    /// How far each joint is beyond its limits on either side of the stitch, the larger of the two, radians.
+    excess: [f32; JOINT_COUNT],
 }
 
 impl Stitch {
@@ -120,32 +125,25 @@ impl Stitch {
             window_after: window(after, 1.0 - share_before),
             difference: difference(&exit, &entry),
             rate: std::array::from_fn(|i| entry_rate[i] - exit_rate[i]),
+            excess: std::array::from_fn(|i| excess(i, exit.rotations[i]).max(excess(i, entry.rotations[i]))),
         }
     }
 
     /// Weights of difference and rate at a frame before the stitch.
     fn before(&self, frame: i32) -> (f32, f32) {
-        let (w, share) = (self.window_before as f32, self.share_before);
-        let s = 1.0 + (frame - self.frame) as f32 / w;
-        if s <= 0.0 { (0.0, 0.0) } else { (share * s * s * (3.0 - 2.0 * s), share * w * s * s * (s - 1.0)) }
+        fade::before(self.share_before, self.window_before as f32, (self.frame - frame) as f32)
     }
 
     /// Weights of difference and rate at a frame after the stitch.
     fn after(&self, frame: i32) -> (f32, f32) {
-        let (w, share) = (self.window_after as f32, 1.0 - self.share_before);
-        let s = (frame - self.frame) as f32 / w;
-        if s >= 1.0 {
-            return (0.0, 0.0);
-        }
-        let left = 1.0 - s;
-        (-share * left * left * (1.0 + 2.0 * s), -share * w * s * left * left)
+        fade::after(1.0 - self.share_before, self.window_after as f32, (frame - self.frame) as f32)
     }
 }
 
 fn difference(from: &Pose, to: &Pose) -> Offset {
     std::array::from_fn(|i| match i {
         JOINT_COUNT => to.root - from.root,
-        _ => (to.rotations[i] * from.rotations[i].inverse()).to_shortest_scaled_axis(),
+        _ => fade::turn_from(from.rotations[i], to.rotations[i]),
     })
 }
 
@@ -153,14 +151,41 @@ fn rate(from: &Pose, to: &Pose, per_frame: f32) -> Offset {
     difference(from, to).map(|d| d * per_frame)
 }
 
-trait ShortestAxis {
-    fn to_shortest_scaled_axis(self) -> Vec3;
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::joint::LEFT_LEG;
 
-impl ShortestAxis for Quat {
-    /// The rotation vector of at most half a turn.
-    fn to_shortest_scaled_axis(self) -> Vec3 {
-        let q = if self.w < 0.0 { -self } else { self };
-        q.to_scaled_axis()
+    #[test]
+    fn blends_turn_no_joint_further_than_what_they_blend() {
+        let pose = |knee: f32| {
+            let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
+            rotations[LEFT_LEG] = Quat::from_rotation_x(knee);
+            Pose { root: Vec3::ZERO, heading: Quat::IDENTITY, rotations }
+        };
+        let over = |pose: &Pose| excess(LEFT_LEG, pose.rotations[LEFT_LEG]);
+        let (exit, entry) = (pose(-0.3), pose(0.0));
+        // A knee that straightens fast would be bent backwards by the rate it is to lose.
+        let mut rate = [Vec3::ZERO; JOINT_COUNT + 1];
+        rate[LEFT_LEG] = Vec3::NEG_X * 0.3;
+        let stitch = Stitch {
+            frame: 0,
+            share_before: 0.5,
+            window_before: 10,
+            window_after: 10,
+            difference: difference(&exit, &entry),
+            rate,
+            excess: std::array::from_fn(|i| excess(i, exit.rotations[i]).max(excess(i, entry.rotations[i]))),
+        };
+        let allowed = over(&exit);
+        assert!(allowed > 0.1);
+        let mut last = 0.0;
+        for weight in 0..20 {
+            let mut blended = pose(0.0);
+            blended.add(&stitch, (0.0, weight as f32 * 0.1));
+            assert!(over(&blended) <= allowed + 1e-3 && (over(&blended) - last).abs() < 0.04, "{}", over(&blended));
+            last = over(&blended);
+        }
+        assert!((last - allowed).abs() < 1e-3, "nothing was held back");
     }
 }

@@ -10,6 +10,7 @@ use glam::{Quat, Vec3};
 use super::{Body, Segment, smoothstep};
 use crate::motion::ik::two_bone;
 use crate::motion::joint::*;
+use crate::motion::limits::excess;
 use crate::motion::{ANKLE_HEIGHT, BodyPart, Build, JOINT_COUNT, JointId, Skeleton, canonical};
 
 /// Knees may always straighten to this part of the leg's length, however bent they were.
@@ -24,6 +25,8 @@ const LOWERING_FRAMES: usize = 6;
 const APPROACH_FRAMES: f32 = 20.0;
 /// A touching hand or a foot that falls short of its place by more than this is told, metres.
 const MAX_MISS: f32 = 0.004;
+/// A joint that is further beyond its limits than the canonical body's by more than this is told, radians.
+const MAX_EXCESS: f32 = 3.5 / 180.0 * std::f32::consts::PI;
 
 /// A hand that touches somebody or holds a box, in frames of the body's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +71,8 @@ pub fn holds(segments: &[Segment], begin: u32) -> Vec<Hold> {
 }
 
 /// The motion of a person of `build` who does what `body`, of the canonical build, does. Rotations speak of the
-/// build's skeleton; `strained` has the frames on which a limb is too short, besides the body's own. O(frames x joints).
+/// build's skeleton; `strained` has the frames on which a limb is too short or turned too far, besides the body's own.
+/// O(frames x joints).
 pub fn fit(body: &Body, holds: &[Hold], build: &Build) -> Body {
     let mut out = body.clone();
     if &build.skeleton == canonical() {
@@ -80,13 +84,21 @@ pub fn fit(body: &Body, holds: &[Hold], build: &Build) -> Body {
         let lift = poses.lift(f, build.leg()) - down;
         out.root[f].y += lift;
         let missed = poses.fit_frame(f, lift, holds, &mut out.rotations[f * JOINT_COUNT..][..JOINT_COUNT]);
-        if missed > MAX_MISS {
+        if missed > MAX_MISS || is_overturned(body.pose(f), out.pose(f)) {
             out.strained.push(f);
         }
     }
     out.strained.sort_unstable();
     out.strained.dedup();
     out
+}
+
+/// True if a joint is further beyond its limits after fitting than before.
+fn is_overturned(before: &[Quat], after: &[Quat]) -> bool {
+    let changed = (0..JOINT_COUNT).filter(|&j| after[j] != before[j]);
+    changed
+        .map(|j| (j, excess(j, after[j])))
+        .any(|(j, now)| now > MAX_EXCESS && now > excess(j, before[j]) + MAX_EXCESS)
 }
 
 /// A motion on both skeletons.

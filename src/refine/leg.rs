@@ -4,6 +4,7 @@
 use glam::{Quat, Vec3};
 
 use crate::motion::ik::two_bone;
+use crate::motion::limits::{excess, hold_back};
 use crate::motion::{JOINT_COUNT, canonical};
 
 /// Largest part of a leg's length that is used, so that knees never lock.
@@ -65,6 +66,15 @@ impl Leg {
         self.lift((now - cosine.clamp(-1.0, 1.0).acos()).clamp(0.0, MAX_LIFT))
     }
 
+    /// The leg with its ball in place and the foot turned to `foot`; `globals` are the joints before.
+    fn bend(&self, globals: &[(Vec3, Quat)], ankle: usize, foot: Quat) -> Bent {
+        let (up, knee) = (globals[ankle - 2], globals[ankle - 1]);
+        let target = self.ball + foot * globals[ankle].1.inverse() * (self.ankle - self.ball);
+        let pole = up.1 * Vec3::Z;
+        let (swing, bend, reached) = two_bone(self.hip, knee.0, globals[ankle].0, target, pole, 0.9999);
+        Bent { up: swing * up.1, knee: swing * bend * knee.1, missed: reached.distance(target) }
+    }
+
     /// The turn by `angle` that moves the ankle about the ball towards the hip.
     fn lift(&self, angle: f32) -> Quat {
         let axis = (self.ankle - self.ball).cross(self.hip - self.ball);
@@ -72,24 +82,35 @@ impl Leg {
     }
 }
 
+/// A leg led to its foot: rotations in the world, and how far it falls short, metres.
+struct Bent {
+    up: Quat,
+    knee: Quat,
+    missed: f32,
+}
+
 /// Moves a foot by `shift`, lifting its heel where the leg is too short; returns how far it falls short, metres.
-/// `globals` are the pose's joints in the world before.
+/// `globals` are the pose's joints in the world before. An ankle that would turn beyond its limits, and beyond what it
+/// was, takes the foot with it, about the ball.
 pub(super) fn plant(pose: &mut [Quat], globals: &[(Vec3, Quat)], ankle: usize, shift: Vec3) -> f32 {
     debug_assert_eq!(pose.len(), JOINT_COUNT);
     let leg = Leg::new(globals, ankle, shift);
-    let lift = leg.heel_lift();
-    let target = leg.ball + lift * (leg.ankle - leg.ball);
+    let mut foot = leg.heel_lift() * globals[ankle].1;
+    let mut bent = leg.bend(globals, ankle, foot);
+    let turn = (bent.knee.inverse() * foot).normalize();
+    let held = hold_back(ankle, turn, || excess(ankle, pose[ankle]));
+    if held != turn {
+        foot = (bent.knee * held).normalize();
+        bent = leg.bend(globals, ankle, foot);
+    }
     let (up, knee, toe) = (ankle - 2, ankle - 1, ankle + 1);
-    let pole = globals[up].1 * Vec3::Z;
-    let (swing, bend, reached) = two_bone(leg.hip, globals[knee].0, globals[ankle].0, target, pole, 0.9999);
-    let (up_rotation, knee_rotation) = (swing * globals[up].1, swing * bend * globals[knee].1);
-    let foot_rotation = lift * globals[ankle].1;
-    pose[up] = (globals[0].1.inverse() * up_rotation).normalize();
-    pose[knee] = (up_rotation.inverse() * knee_rotation).normalize();
-    pose[ankle] = (knee_rotation.inverse() * foot_rotation).normalize();
-    // The toes stay on the floor.
-    pose[toe] = (foot_rotation.inverse() * globals[toe].1).normalize();
-    reached.distance(target)
+    pose[up] = (globals[0].1.inverse() * bent.up).normalize();
+    pose[knee] = (bent.up.inverse() * bent.knee).normalize();
+    pose[ankle] = (bent.knee.inverse() * foot).normalize();
+    // The toes stay on the floor, as far as they bend.
+    let flat = (foot.inverse() * globals[toe].1).normalize();
+    pose[toe] = hold_back(toe, flat, || excess(toe, pose[toe]));
+    bent.missed
 }
 
 /// Bends the toes up where their tip would be more than [`TOE_SLACK`] below the floor once the foot is moved up by
@@ -104,8 +125,11 @@ pub(super) fn lift_toes(pose: &mut [Quat], globals: &mut [(Vec3, Quat)], ankle: 
     }
     let slope = |y: f32| (y / tip.length()).clamp(-1.0, 1.0).asin();
     let axis = tip.cross(Vec3::Y).try_normalize().unwrap_or(turn * Vec3::NEG_X);
-    globals[toe].1 = (Quat::from_axis_angle(axis, slope(lowest) - slope(tip.y)) * turn).normalize();
-    pose[toe] = (globals[ankle].1.inverse() * globals[toe].1).normalize();
+    let lifted = Quat::from_axis_angle(axis, slope(lowest) - slope(tip.y)) * turn;
+    let bent = (globals[ankle].1.inverse() * lifted).normalize();
+    // Toes that would have to bend further than they can sink in a little.
+    pose[toe] = hold_back(toe, bent, || excess(toe, pose[toe]));
+    globals[toe].1 = (globals[ankle].1 * pose[toe]).normalize();
 }
 
 #[cfg(test)]
@@ -144,6 +168,24 @@ mod tests {
         assert!((after[ball].0 - before[ball].0 - shift).length() < 1e-3);
         assert!(after[LEFT_FOOT].0.y > before[LEFT_FOOT].0.y + 0.01, "the heel did not come up");
         assert!(after[toe].1.angle_between(before[toe].1) < 1e-3, "the toes turned");
+    }
+
+    #[test]
+    fn an_ankle_that_turns_too_far_takes_the_foot_along_about_its_ball() {
+        let mut pose = [Quat::IDENTITY; JOINT_COUNT];
+        pose[LEFT_FOOT] = Quat::from_rotation_x(-1.2);
+        let (shift, mut before, mut after) = (Vec3::new(0.0, 0.1, -0.45), Globals::new(), Globals::new());
+        let root = canonical().joints[0].offset;
+        canonical().globals(root, &pose, &mut before);
+        let knee = Leg::new(&before, LEFT_FOOT, shift).bend(&before, LEFT_FOOT, before[LEFT_FOOT].1).knee;
+        let unheld = excess(LEFT_FOOT, knee.inverse() * before[LEFT_FOOT].1);
+        assert!(unheld > 0.1, "the test turns nothing too far: {unheld}");
+        let missed = plant(&mut pose, &before, LEFT_FOOT, shift);
+        canonical().globals(root, &pose, &mut after);
+        let ball = LEFT_FOOT + 1;
+        assert!(missed < 1e-3 && after[ball].0.distance(before[ball].0 + shift) < 2e-3, "{missed}");
+        let held = excess(LEFT_FOOT, pose[LEFT_FOOT]);
+        assert!(held < 0.35 * unheld, "{held} after {unheld}");
     }
 
     #[test]

@@ -1,16 +1,16 @@
 /** `window.crowdquilt`: how tests and scripts look inside. */
 
-import type { Picture } from "./draw/picture";
+import type { FrameStats, Picture } from "./draw/picture";
 import type { Player } from "./play/player";
 import type { State, Store } from "./store";
 
 export interface Handle {
   /** Resolves with the first picture of the crowd; rejects with the message shown on the page. */
   ready: Promise<void>;
-  state(): Omit<State, "crowd">;
+  state(): Omit<State, "crowd" | "set">;
   seek(secs: number): Promise<void>;
   set<K extends keyof State>(key: K, value: State[K]): Promise<void>;
-  frame(): { jsMs: number; meanMs: number; pictures: number; drawCalls: number; triangles: number };
+  frame(): FrameStats & { memory: { geometries: number; textures: number } };
   /** Joint positions (x, y, z, 1 + fragment index or 0 while absent) read back from the GPU, person by person. */
   joints(): number[];
   /** The pixel of a person's hips on the page; null while absent. */
@@ -46,7 +46,10 @@ export function debugHandle(ready: Promise<void>, store: Store, player: Player, 
       store.set(key, value);
       return drawn();
     },
-    frame: () => ({ ...picture.stats }),
+    frame: () => {
+      const { geometries, textures } = picture.stage.renderer.info.memory;
+      return { ...picture.stats, memory: { geometries, textures } };
+    },
     joints: () => Array.from(picture.drawn?.textures.readPositions() ?? []),
     project: (person) => {
       const at = picture.placeOf(person)?.project(picture.cameras.camera);

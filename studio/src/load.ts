@@ -1,18 +1,28 @@
-/** Fetches the crowd and, if there is one, its report. */
+/** Fetches what is to be shown, a crowd or a patch set, and the report of a crowd if there is one. */
 
 import type { Crowd } from "./crowd/model";
 import { readCrowd } from "./crowd/reader";
 import { parseReport, type Report } from "./report";
+import type { PatchSet } from "./set/model";
+import { readSet, MAGIC as SET } from "./set/reader";
 
-/** The crowd at `url`. Throws an Error whose message names the address and what is wrong. */
-export async function loadCrowd(url: string): Promise<Crowd> {
+export interface Shown {
+  crowd?: Crowd;
+  set?: PatchSet;
+}
+
+/** The crowd or set at `url`, told by its first bytes. Throws an Error that names the address and what is wrong. */
+export async function loadShown(url: string): Promise<Shown> {
   const response = await fetch(url).catch(() => null);
   if (!response) throw new Error(`${url}: the server does not answer. Is it still running?`);
   if (!response.ok)
-    throw new Error(`${url}: expected a crowd file, the server says ${response.status} ${response.statusText}.`);
+    throw new Error(
+      `${url}: expected a crowd or a patch set, the server says ${response.status} ${response.statusText}.`,
+    );
   const bytes = await response.arrayBuffer();
   try {
-    return readCrowd(bytes);
+    const magic = new TextDecoder("latin1").decode(bytes.slice(0, SET.length));
+    return magic === SET ? { set: readSet(bytes) } : { crowd: readCrowd(bytes) };
   } catch (error) {
     throw new Error(`${url}: ${(error as Error).message}.`);
   }

@@ -2,9 +2,10 @@
 
 import "@fontsource-variable/inter/wght.css";
 import "./style.css";
+import type { Crowd } from "./crowd/model";
 import { debugHandle } from "./debug";
 import { Picture } from "./draw/picture";
-import { loadCrowd, loadReport } from "./load";
+import { loadReport, loadShown } from "./load";
 import { installInspector } from "./panels/inspector";
 import { installMessage } from "./panels/message";
 import { installStats } from "./panels/stats";
@@ -12,6 +13,8 @@ import { installTimeline } from "./panels/timeline";
 import { installToolbar } from "./panels/toolbar";
 import { readParameters } from "./parameters";
 import { Player } from "./play/player";
+import { stepKind } from "./set/list";
+import { openSet } from "./set/page";
 import { COLOR_MODES, OUTLINES, Store } from "./store";
 import { installKeys } from "./tools/keys";
 import { installPicking } from "./tools/picking";
@@ -29,13 +32,12 @@ store.set("bodies", parameters.bodies);
 
 const player = new Player(store);
 installMessage(page, store);
-installStats(page, store);
 installToolbar(page, store);
-installInspector(page, store, player);
-installTimeline(page, store, player);
+const track = installTimeline(page, store, player);
 installKeys(store, player, {
   color: () => store.set("color", after(COLOR_MODES, store.get("color"))),
   outlines: () => store.set("outlines", after(OUTLINES, store.get("outlines"))),
+  kind: (step) => stepKind(store, step),
 });
 
 const picture = openPicture();
@@ -62,9 +64,11 @@ function openPicture(): Picture | null {
 
 async function start(shown: Picture): Promise<void> {
   try {
-    const crowd = await loadCrowd(parameters.crowd);
-    shown.show(crowd);
-    store.set("crowd", crowd);
+    const { set, crowd } = await loadShown(parameters.crowd);
+    // The signs on the floor are painted once, in the page's font.
+    if (set) await document.fonts.load('600 44px "Inter Variable"');
+    if (set) openSet(set, parameters.kind, { parent: page, track }, store, player, shown);
+    else if (crowd) openCrowd(crowd, shown);
   } catch (error) {
     store.set("problem", (error as Error).message);
     throw error;
@@ -75,9 +79,16 @@ async function start(shown: Picture): Promise<void> {
     store.set("follow", parameters.follow);
   }
   store.set("playing", !parameters.paused);
-  void loadReport(parameters.report).then((report) => store.set("report", report));
   animate(shown);
   while (shown.stats.pictures === 0) await new Promise(requestAnimationFrame);
+}
+
+function openCrowd(crowd: Crowd, shown: Picture): void {
+  installStats(page, store);
+  installInspector(page, store, player);
+  shown.show(crowd);
+  store.set("crowd", crowd);
+  void loadReport(parameters.report).then((report) => store.set("report", report));
 }
 
 function animate(shown: Picture): void {

@@ -11,6 +11,8 @@ export interface Parameters {
   outlines: Outlines;
   bodies: boolean;
   person: number | null;
+  /** Name of the kind of a patch set to begin with. */
+  kind: string | null;
   follow: boolean;
   paused: boolean;
   /** Panels hidden: only the picture. */
@@ -38,6 +40,7 @@ export function readParameters(query: string): Parameters {
     color: one("color", COLOR_MODES, "character"),
     outlines: one("outlines", OUTLINES, "shared"),
     bodies: q.get("bodies") !== "0",
+    kind: q.get("kind"),
     person: person === null ? null : Math.floor(person),
     follow: q.get("follow") === "1",
     paused: q.get("paused") === "1",

@@ -3,6 +3,7 @@
 import { Bus } from "./bus";
 import type { Crowd } from "./crowd/model";
 import type { Report } from "./report";
+import type { PatchSet } from "./set/model";
 
 export type View = "persp" | "top" | "front" | "loom";
 export type ColorMode = "character" | "kind" | "shared";
@@ -11,9 +12,24 @@ export const VIEWS: readonly View[] = ["persp", "top", "front", "loom"];
 export const COLOR_MODES: readonly ColorMode[] = ["character", "kind", "shared"];
 export const OUTLINES: readonly Outlines[] = ["none", "shared", "all"];
 
+/** Which kinds of a set are listed. */
+export interface Filter {
+  /** All of them must occur in a kind's name, labels or pose groups. */
+  words: string;
+  /** 0 is any number; MANY is that or more. */
+  people: number;
+  mirrored: boolean;
+}
+export const MANY = 3;
+
 export interface State {
   crowd: Crowd | null;
   report: Report | null;
+  /** The patch set whose kinds are shown, each as a crowd of its own. */
+  set: PatchSet | null;
+  /** Index of the kind that is shown. */
+  kind: number | null;
+  filter: Filter;
   /** Seconds on the crowd's clock. */
   time: number;
   playing: boolean;
@@ -47,6 +63,9 @@ export class Store {
   private readonly state: State = {
     crowd: null,
     report: null,
+    set: null,
+    kind: null,
+    filter: { words: "", people: 0, mirrored: false },
     time: 0,
     playing: false,
     speed: 1,
@@ -72,9 +91,9 @@ export class Store {
     this.bus.emit("redraw", undefined);
   }
 
-  /** A copy of all fields, for tests and debugging. */
-  snapshot(): Omit<State, "crowd"> {
-    const { crowd: _, ...rest } = this.state;
+  /** A copy of all fields but the big ones, for tests and debugging. */
+  snapshot(): Omit<State, "crowd" | "set"> {
+    const { crowd: _, set: __, ...rest } = this.state;
     return rest;
   }
 }

@@ -11,7 +11,9 @@ from rich.markup import escape
 
 from crowdquilt import inspection, motion, patch, samples
 from crowdquilt.cli.app import app, console, example
-from crowdquilt.cli.tables import facts, kind_table
+from crowdquilt._core import CrowdquiltError
+from crowdquilt.cli.progress import make_set
+from crowdquilt.cli.tables import facts, kind_table, take_table
 from crowdquilt.outputs import whole_folder
 from crowdquilt.plot.capture import capture as draw
 
@@ -101,19 +103,94 @@ def tell(found: dict[str, Any]) -> None:
 
 
 @app.command(
-    epilog=example("patches out/samples -o samples.patches", "patches takes --captures cmu/bvh -o cmu.patches")
+    epilog=example(
+        "patches out/samples -o samples.patches",
+        "patches captures/index.csv -o mine.patches --takes found",
+        "patches found --captures captures -o edited.patches",
+        "patches out/samples --compose examples/compose -o out/composed.patches",
+    )
 )
 def patches(
-    folder: Annotated[Path, typer.Argument(help="Folder with take files (*.take.json).")],
+    source: Annotated[
+        Path, typer.Argument(help="A folder of captures or take files, an index (.csv), a take file, or one capture.")
+    ],
     out: Annotated[Path, typer.Option("--out", "-o", help="Patch set to write (.patches).")],
     captures: Annotated[Path | None, typer.Option(help="Folder of the captures, if not beside the take files.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Do not list the kinds.")] = False,
+    takes: Annotated[
+        Path | None, typer.Option(help="Folder for take files that say what was found: to edit, and cut again.")
+    ] = None,
+    threshold: Annotated[float | None, typer.Option(help="How near poses of a group are, in metres.")] = None,
+    groups: Annotated[int | None, typer.Option(help="Most pose groups that patches begin and end with.")] = None,
+    alone: Annotated[int | None, typer.Option(help="Most patches of one person, mirrored copies not counted.")] = None,
+    touch_gap: Annotated[float | None, typer.Option(help="Bodies nearer than this touch, in metres.")] = None,
+    near: Annotated[float | None, typer.Option(help="People nearer than this react to each other, in metres.")] = None,
+    compose: Annotated[
+        list[Path] | None, typer.Option(help="File (.compose.toml) that composes a patch by hand, or folder of them.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Do not list takes and kinds.")] = False,
 ) -> None:
-    """Cut motion patches out of takes, and their mirrored copies."""
-    made = patch.cut(folder, captures)
+    """Make motion patches of captures, and their mirrored copies.
+
+    Takes that say where to cut are cut there. In all others events between people are found (they touch, react to each
+    other, act together), and a few recurring poses at which patches begin and end. Files that end in .compose.toml
+    compose patches by hand of clips of the takes.
+    """
+    options = {"threshold": threshold, "groups": groups, "alone": alone, "touch_gap": touch_gap, "near": near}
+    options |= {"compose": compose}
+    try:
+        made = make_set(source, captures, **{name: value for name, value in options.items() if value is not None})
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from None
+    if not len(made.set):
+        reasons = [f"{take.name}: {note}" for take in made.takes for note in take.notes]
+        raise CrowdquiltError(f"{source}: nothing to make patches of: {'; '.join(reasons)}")
     out.parent.mkdir(parents=True, exist_ok=True)
-    made.save(out)
+    made.set.save(out)
+    if takes is not None:
+        with whole_folder(takes) as part:
+            for name, text in made.take_files():
+                (part / name).write_text(text)
+    if as_json:
+        print(json.dumps(set_facts(made), indent=2))
+        return
     if not quiet:
-        console.print(kind_table(made))
-    alone = sum(kind.people == 1 for kind in made.kinds)
-    console.print(f"{out}: {len(made)} kinds, {alone} of one person, {len(made.groups)} pose groups")
+        console.print(take_table(made.takes))
+        console.print(kind_table(made.set))
+    for take in made.takes:
+        for note in take.notes:
+            console.print(f"[yellow]{escape(take.name)}[/yellow] {escape(note)}", soft_wrap=True)
+    found = set_facts(made)
+    console.print(
+        f"{out}: {found['kinds']} kinds and their mirror images, {found['single_person_kinds']} of one person, "
+        f"{found['pose_groups']} pose groups, {'closed' if found['closed'] else 'not closed: see crowdquilt kinds'}",
+        soft_wrap=True,
+    )
+
+
+def set_facts(made: patch.Made) -> dict[str, Any]:
+    """What a set holds and what was found in each take; mirrored copies are not counted."""
+    kinds = [kind for kind in made.set.kinds if not kind.mirrored]
+    alone = sum(kind.people == 1 for kind in kinds)
+    return {
+        "kinds": len(kinds),
+        "single_person_kinds": alone,
+        "multi_person_kinds": len(kinds) - alone,
+        "pose_groups": len(made.set.groups),
+        "closed": patch.connectivity(made.set).closed,
+        "takes": [
+            {
+                "name": take.name,
+                "people": take.people,
+                "annotated": take.annotated,
+                "events": [
+                    {"kind": kind, "people": people, "begin": round(begin, 3), "end": round(end, 3)}
+                    for kind, people, begin, end in take.events
+                ],
+                "patches": take.patches,
+                "together": round(take.together, 4),
+                "notes": take.notes,
+            }
+            for take in made.takes
+        ],
+    }

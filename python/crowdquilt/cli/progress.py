@@ -5,12 +5,15 @@ from __future__ import annotations
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
+from typing import Any
 
 from rich.progress import BarColumn, SpinnerColumn, TextColumn
 from rich.progress import Progress as Bar
 
-from crowdquilt._core import Outcome, PatchSet, Scene, tile
+from crowdquilt import patch
+from crowdquilt._core import Made, Outcome, PatchSet, Scene, tile
 from crowdquilt._core import Progress as Report
 from crowdquilt.cli.app import console
 
@@ -87,3 +90,15 @@ def solve(
             return not asked
 
         return tile(scene, patches, seed=seed, method=method, time=time, threads=threads, progress=show)
+
+
+def make_set(source: Path, captures: Path | None, **options: Any) -> Made:
+    """Make a patch set with a progress bar; Ctrl-C stops it."""
+    columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(bar_width=24))
+    with Bar(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("starting", total=1.0)
+
+        def show(step: tuple[str, float]) -> None:
+            bar.update(task, description=step[0], completed=step[1])
+
+        return patch.make(source, captures, progress=show, **options)

@@ -1,4 +1,4 @@
-"""`plot` and `view`: looking at a crowd."""
+"""`plot` and `view`: looking at a crowd, or at the kinds of a patch set."""
 
 from __future__ import annotations
 
@@ -41,13 +41,15 @@ def plot(
     console.print(f"{out}: written")
 
 
-@app.command(epilog=example("view out/demo/crowd.crowd"))
+@app.command(epilog=example("view out/demo/crowd.crowd", "view people.patches"))
 def view(
-    crowd: Annotated[Path, typer.Argument(help="Crowd (.crowd).")] = Path("out/demo/crowd.crowd"),
+    crowd: Annotated[Path, typer.Argument(help="Crowd (.crowd) or patch set (.patches).")] = Path(
+        "out/demo/crowd.crowd"
+    ),
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port on this machine; a free one if 0.")] = 0,
     no_open: Annotated[bool, typer.Option("--no-open", help="Do not open a browser.")] = False,
 ) -> None:
-    """Watch a crowd in the browser, served from this machine to this machine only."""
+    """Watch a crowd, or the kinds of a patch set, in the browser, served from this machine to this machine only."""
     from crowdquilt import server
 
     server.serve(crowd, port, open_browser=not no_open, say=lambda line: console.print(line, soft_wrap=True))

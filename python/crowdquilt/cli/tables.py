@@ -7,7 +7,7 @@ from typing import Any
 from rich.markup import escape
 from rich.table import Table
 
-from crowdquilt._core import PatchSet, Report
+from crowdquilt._core import PatchSet, Report, Take
 
 
 def number(value: float) -> str:
@@ -37,6 +37,18 @@ def kind_table(patches: PatchSet) -> Table:
             ports = ", ".join(f"{role.entry} → {role.exit}" for role in kind.roles)
             contacts = str(kind.contacts) if kind.contacts else ""
             table.add_row(escape(kind.name), str(kind.people), f"{kind.seconds:.2f}", contacts, ports)
+    return table
+
+
+def take_table(takes: list[Take]) -> Table:
+    """What was found in every take."""
+    table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
+    for title in ("take", "people", "events", "patches", "together"):
+        table.add_column(title, justify="left" if title == "take" else "right")
+    for take in takes:
+        events = "annotated" if take.annotated else str(len(take.events))
+        together = f"{take.together:.0%}" if take.together else ""
+        table.add_row(escape(take.name), str(take.people), events, str(len(take.patches)), together)
     return table
 
 

@@ -1,7 +1,13 @@
-"""Pictures: of a crowd, `plan` from above at one moment and `loom` in space and time; of a `capture`."""
+"""Pictures.
+
+Of a crowd: `plan` from above at one moment, `loom` in space and time; of a `capture`; of a patch set: `sheet` with all
+its kinds, `groups` with what leads from one pose group to another.
+"""
 
 from crowdquilt.plot.capture import capture
+from crowdquilt.plot.groups import groups
 from crowdquilt.plot.loom import loom
 from crowdquilt.plot.plan import plan
+from crowdquilt.plot.sheet import sheet
 
-__all__ = ["capture", "loom", "plan"]
+__all__ = ["capture", "groups", "loom", "plan", "sheet"]

@@ -7,6 +7,7 @@
 //! 3. Floor: shifted so that the planted ball of the foot is 0.02 m above it.
 //! 4. [`build`]: sampled at 30 fps, with a smooth heading.
 //! 5. Feet: planted feet are detected and pinned.
+//! 6. Touch: hands of two people that touch in the capture are brought as near each other as they were.
 
 pub mod build;
 mod families;
@@ -22,6 +23,9 @@ mod rig_tests;
 pub mod rigfile;
 #[cfg(test)]
 mod tests;
+mod touch;
+#[cfg(test)]
+mod touch_tests;
 
 pub(crate) use floor::lowest;
 pub use height::body_height;
@@ -49,12 +53,20 @@ pub fn to_canonical(clip: &Clip) -> Result<Motion> {
 }
 
 /// All people of a take: as [`to_canonical`], with one scale on the ground about the take's common origin (the mean
-/// of the people's leg ratios), so that who met still meets. Heights keep each person's own ratio.
+/// of the people's leg ratios), so that who met still meets. Heights keep each person's own ratio. Hands of two people
+/// that touch in the capture (3 cm or less between them) are brought as near each other as they were.
 ///
 /// # Errors
 /// As [`to_canonical`], for the first clip that is bad.
 pub fn take(clips: &[Clip]) -> Result<Vec<Motion>> {
     let rigs = clips.iter().map(Rig::new).collect::<Result<Vec<Rig>>>()?;
+    let mut motions = bodies(clips, &rigs)?;
+    touch::restore(&mut motions, &touch::measure(clips, &rigs));
+    Ok(motions)
+}
+
+/// Everybody on a canonical body, whatever the others do.
+fn bodies(clips: &[Clip], rigs: &[Rig]) -> Result<Vec<Motion>> {
     let ratios: Vec<f32> = rigs.iter().map(|rig| CANONICAL_LEG / rig.leg).collect();
     let ground_scale = ratios.iter().sum::<f32>() / ratios.len().max(1) as f32;
     let person = |((clip, rig), &ratio): ((&Clip, &Rig), &f32)| -> Result<Motion> {
@@ -71,7 +83,7 @@ pub fn take(clips: &[Clip]) -> Result<Vec<Motion>> {
         feet::pin(&mut motion);
         Ok(motion)
     };
-    clips.iter().zip(&rigs).zip(&ratios).map(person).collect()
+    clips.iter().zip(rigs).zip(&ratios).map(person).collect()
 }
 
 /// Legs and ways beyond these are no person's, and sums of them no numbers, metres.

@@ -34,15 +34,16 @@ pub struct BoundaryOptions {
     pub groups: usize,
     /// Most groups that are chosen; default 4.
     pub most: usize,
-    /// What a group costs, in frames of motion; default 300.
-    pub weight: f32,
+    /// What a group costs, in frames of motion; by default 2 % of the collection's frames, at most 300 (another kind of
+    /// boundary must save as much as ten seconds).
+    pub weight: Option<f32>,
     /// Most poses to cluster: of longer collections fewer frames of rests are candidates; default 1500.
     pub max_poses: usize,
 }
 
 impl Default for BoundaryOptions {
     fn default() -> Self {
-        Self { threshold: 0.26, groups: 10, most: 4, weight: 300.0, max_poses: 1500 }
+        Self { threshold: 0.26, groups: 10, most: 4, weight: None, max_poses: 1500 }
     }
 }
 
@@ -127,7 +128,9 @@ pub fn boundaries(takes: &[&[Motion]], found: &[Detection], options: &BoundaryOp
     let cuts = cuts(takes, &quiet, found, &groups, 0.5 * options.threshold);
     let lines = lines(takes, found, &cuts);
     let twins: Vec<usize> = groups.iter().map(|g| g.twin).collect();
-    let choice = Search { lines: &lines, twins: &twins, weight: options.weight, most: options.most }.choose();
+    let frames: usize = lines.iter().map(|l| l.length).sum();
+    let weight = options.weight.unwrap_or((0.02 * frames as f32).min(300.0));
+    let choice = Search { lines: &lines, twins: &twins, weight, most: options.most }.choose();
     let chosen = |own: Vec<Cut>| own.into_iter().filter(|c| choice.groups.contains(&c.group)).collect();
     let cuts: Vec<Vec<Vec<Cut>>> = cuts.into_iter().map(|take| take.into_iter().map(chosen).collect()).collect();
     let each = found.iter().enumerate().map(|(index, d)| bound::Take { index, events: &d.events, cuts: &cuts[index] });

@@ -47,7 +47,7 @@ function seedText(value: unknown, header: string): string {
   return exact?.[1] ?? String(rounded);
 }
 
-function joint(value: unknown, index: number, all: unknown[]): Joint {
+export function joint(value: unknown, index: number, all: unknown[]): Joint {
   const place = `joint ${index}`;
   const v = object(value, place);
   const parent = v.parent === null || v.parent === undefined ? -1 : count(v.parent, `${place}, parent`);

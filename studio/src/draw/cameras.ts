@@ -31,14 +31,15 @@ export class Cameras {
     });
   }
 
-  /** Aims at a ball around `center`, at once or in a short flight. */
-  aim(view: View, center: Vector3, radius: number, fly: boolean): void {
+  /** Aims at a ball around `center`, at once or in a short flight; `turned`: from the side one looks from now. */
+  aim(view: View, center: Vector3, radius: number, fly: boolean, turned = false): void {
     const fov = (this.camera.fov * Math.PI) / 360;
     const tight = Math.min(Math.tan(fov), Math.tan(fov) * this.camera.aspect);
     const distance =
       (radius * (view === "top" ? 0.98 : view === "front" ? 0.66 : view === "persp" ? 0.82 : 0.92)) / tight;
     this.controls.maxDistance = Math.max(distance * 4, 30);
-    const position = center.clone().addScaledVector(DIRECTIONS[view], distance);
+    const direction = turned ? this.camera.position.clone().sub(this.controls.target).normalize() : DIRECTIONS[view];
+    const position = center.clone().addScaledVector(direction, distance);
     if (fly) {
       this.move = {
         from: [this.camera.position.clone(), this.controls.target.clone()],

@@ -127,3 +127,11 @@ export function lookOf(person: number): (string | null)[] {
 export function looksOf(person: number): number[] {
   return lookOf(person).flatMap((color) => (color === null ? [0, 0, 0, 0] : [...bytes(color), 255]));
 }
+
+/** The colours of the roles of a kind, as on the contact sheet (python/crowdquilt/plot/sheet.py). */
+const ROLES = ["#2d6fa3", "#d2603a", "#e0a02c", "#4f8f54", "#8659a3", "#b8508c", "#2f9c9a", "#7c6a45"];
+
+/** The colour of a role of a kind. */
+export function roleColor(role: number): string {
+  return ROLES[role % ROLES.length];
+}

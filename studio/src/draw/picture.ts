@@ -6,7 +6,9 @@ import { sampleRoot } from "../crowd/sample";
 import { COLOR_MODES, type Store, type View } from "../store";
 import { Boxes } from "./boxes";
 import { Cameras } from "./cameras";
+import { discard } from "./discard";
 import { Loom } from "./loom";
+import type { Marks } from "./marks";
 import { type Hull, hulls, PatchOutlines } from "./outlines";
 import { People } from "./people";
 import { Stage } from "./stage";
@@ -21,6 +23,8 @@ interface Drawn {
   outlines: PatchOutlines;
   loom: Loom;
   hulls: Hull[];
+  /** Of a kind of a patch set. */
+  marks: Marks | null;
 }
 
 export interface FrameStats {
@@ -59,8 +63,9 @@ export class Picture {
     this.dirty = true;
   }
 
-  /** Builds everything that is drawn of a crowd. */
-  show(crowd: Crowd): void {
+  /** Builds everything that is drawn of a crowd, in place of the one before. */
+  show(crowd: Crowd, marks: Marks | null = null): void {
+    const before = this.drawn;
     const textures = new CrowdTextures(this.stage.renderer, crowd);
     const people = new People(crowd, textures);
     const boxes = new Boxes(crowd);
@@ -69,8 +74,16 @@ export class Picture {
     const loom = new Loom(crowd, all);
     this.stage.build(crowd);
     this.stage.scene.add(people.body, people.spots, boxes.group, outlines.mesh, loom.group);
-    this.drawn = { crowd, textures, people, boxes, outlines, loom, hulls: all };
-    this.aim(this.store.get("view"), false);
+    if (marks) this.stage.scene.add(marks.group);
+    this.drawn = { crowd, textures, people, boxes, outlines, loom, hulls: all, marks };
+    // After the new one is there: programs that both use are not compiled again.
+    if (before) this.drop(before);
+    this.aim(this.store.get("view"), false, before !== null);
+  }
+
+  private drop({ people, boxes, outlines, loom, marks, textures }: Drawn): void {
+    for (const gone of [people.body, people.spots, boxes.group, outlines.mesh, loom.group, marks?.group]) if (gone) discard(gone);
+    textures.dispose();
   }
 
   /** How high the present moment is drawn: on the ground, or on the loom's plane. */
@@ -78,19 +91,21 @@ export class Picture {
     return this.drawn && this.store.get("view") === "loom" ? this.drawn.loom.heightAt(this.store.get("time")) : 0;
   }
 
-  aim(view: View, fly: boolean): void {
+  /** Looks from a view's side, or, `turned`, from where one looks now. */
+  aim(view: View, fly: boolean, turned = false): void {
     if (!this.drawn) return;
     this.store.set("follow", false);
     const { center, radius } = this.stage;
     if (view === "loom") {
       const middle = center.clone().setY(this.drawn.loom.height * 0.43);
-      this.cameras.aim(view, middle, Math.hypot(radius, this.drawn.loom.height / 2) * 1.12, fly);
+      this.cameras.aim(view, middle, Math.hypot(radius, this.drawn.loom.height / 2) * 1.12, fly, turned);
     } else {
       this.cameras.aim(
         view,
-        center.clone().setY(view === "front" ? 0.2 : view === "persp" ? -radius * 0.05 : 0),
+        center.clone().setY(this.drawn.marks ? 0.55 : view === "front" ? 0.2 : view === "persp" ? -radius * 0.05 : 0),
         radius,
         fly,
+        turned,
       );
     }
     this.invalidate();
@@ -112,7 +127,7 @@ export class Picture {
     stats.triangles = this.stage.renderer.info.render.triangles;
   }
 
-  private draw({ people, boxes, outlines, loom }: Drawn): void {
+  private draw({ people, boxes, outlines, loom, marks }: Drawn): void {
     const { store, stage, cameras, lift } = this;
     const time = store.get("time");
     const inLoom = store.get("view") === "loom";
@@ -124,6 +139,10 @@ export class Picture {
     boxes.group.visible = store.get("bodies");
     boxes.update(time, lift, !inLoom);
     outlines.update(time, lift, store.get("outlines"), store.get("color"));
+    if (marks) {
+      marks.group.visible = !inLoom;
+      marks.update(time);
+    }
     loom.group.visible = inLoom;
     if (inLoom) loom.update(time, store.get("person") ?? -1);
     people.body.castShadow = !inLoom;

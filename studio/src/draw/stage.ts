@@ -23,6 +23,7 @@ import {
 } from "three";
 import { bounds } from "../crowd/hull";
 import type { Crowd, Vec2 } from "../crowd/model";
+import { discard } from "./discard";
 import { LIGHT, type Theme } from "./palette";
 import { band } from "./strips";
 
@@ -65,7 +66,7 @@ export class Stage {
     const { low, high } = bounds(crowd.region);
     this.center.set((low[0] + high[0]) / 2, 0, (low[1] + high[1]) / 2);
     this.radius = Math.hypot(high[0] - low[0], high[1] - low[1]) / 2;
-    this.ground.clear();
+    for (const old of [...this.ground.children]) discard(old);
     this.ground.add(this.plane(crowd.region), this.shadows(), this.border(crowd.region));
     for (const obstacle of crowd.obstacles) this.ground.add(this.obstacle(obstacle));
   }

@@ -36,6 +36,7 @@ export class CrowdTextures {
   readonly poses: WebGLRenderTarget;
   readonly columns = COLUMNS;
   private readonly material: RawShaderMaterial;
+  private readonly triangle: BufferGeometry;
   private readonly scene = new Scene();
   private readonly camera = new OrthographicCamera();
   private drawnFrame = Number.NaN;
@@ -68,6 +69,7 @@ export class CrowdTextures {
     this.material = poseMaterial(crowd, width, limit, this.builds);
     const triangle = new BufferGeometry();
     triangle.setAttribute("position", new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
+    this.triangle = triangle;
     const mesh = new Mesh(triangle, this.material);
     mesh.frustumCulled = false;
     this.scene.add(mesh);
@@ -83,6 +85,16 @@ export class CrowdTextures {
     this.renderer.setRenderTarget(this.poses);
     this.renderer.render(this.scene, this.camera);
     this.renderer.setRenderTarget(before);
+  }
+
+  /** Frees everything. */
+  dispose(): void {
+    const { rotations, roots, people } = this.material.uniforms;
+    for (const { value } of [rotations, roots, people]) (value as DataTexture).dispose();
+    for (const texture of [this.looks, this.fragmentColors, this.builds]) texture.dispose();
+    this.poses.dispose();
+    this.triangle.dispose();
+    this.material.dispose();
   }
 
   /** The joint positions (x, y, z, presence) as the GPU has them, person by person. Slow: for tests. */

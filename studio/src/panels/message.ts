@@ -4,7 +4,7 @@ import type { Store } from "../store";
 import { el } from "./dom";
 
 export function installMessage(parent: HTMLElement, store: Store): void {
-  const loading = el("div", "loading", [el("span", "", ["Loading the crowd"])]);
+  const loading = el("div", "loading", [el("span", "", ["Loading"])]);
   parent.append(loading);
   store.bus.on("crowd", () => loading.remove());
   store.bus.on("problem", (problem) => {
@@ -14,7 +14,7 @@ export function installMessage(parent: HTMLElement, store: Store): void {
       el(
         "div",
         "problem",
-        [el("div", "panel", [el("h2", "", ["This crowd cannot be shown"]), el("p", "", [problem])])],
+        [el("div", "panel", [el("h2", "", ["This file cannot be shown"]), el("p", "", [problem])])],
         { role: "alert" },
       ),
     );

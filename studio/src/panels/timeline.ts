@@ -10,7 +10,8 @@ const PLAY = "M4 2.5v11l9-5.5z";
 const PAUSE = "M3.5 2.5h3v11h-3zM9.5 2.5h3v11h-3z";
 const LOOP = "M3 8a5 5 0 0 1 8.5-3.5V2h1.5v5H8V5.5h2.6A3.5 3.5 0 1 0 11.5 8H13A5 5 0 1 1 3 8z";
 
-export function installTimeline(parent: HTMLElement, store: Store, player: Player): void {
+/** Returns the track, for marks on it. */
+export function installTimeline(parent: HTMLElement, store: Store, player: Player): HTMLElement {
   const play = button("", "Play or pause (Space)", () => player.toggle(), "round play");
   const back = button("‹", "One frame back (←)", () => player.step(-1), "round small");
   const forth = button("›", "One frame on (→)", () => player.step(1), "round small");
@@ -44,13 +45,17 @@ export function installTimeline(parent: HTMLElement, store: Store, player: Playe
     if (!crowd) return;
     end.textContent = `/ ${clockText(duration(crowd))}`;
     drawGraph(graph, crowd);
-    new ResizeObserver(() => drawGraph(graph, crowd)).observe(track);
   });
+  new ResizeObserver(() => {
+    const crowd = store.get("crowd");
+    if (crowd) drawGraph(graph, crowd);
+  }).observe(track);
   showPlaying(store.get("playing"));
   showTime(store.get("time"));
   speeds.mark(String(store.get("speed")));
   loop.setAttribute("aria-pressed", String(store.get("loop")));
   installScrubbing(track, store, player);
+  return track;
 }
 
 function installScrubbing(track: HTMLElement, store: Store, player: Player): void {

@@ -49,12 +49,13 @@ export function installToolbar(parent: HTMLElement, store: Store): void {
     },
     "round",
   );
-  const field = (label: string, control: HTMLElement) => el("div", "field", [el("span", "label", [label]), control]);
+  const field = (label: string, control: HTMLElement, classes = "") =>
+    el("div", `field ${classes}`, [el("span", "label", [label]), control]);
   parent.append(
     el("div", "toolbar", [
       field("View", views.element),
-      field("Colour", colors.element),
-      field("Outlines", outlines.element),
+      field("Colour", colors.element, "of-crowd"),
+      field("Outlines", outlines.element, "of-crowd"),
       helpButton,
     ]),
     help,

@@ -8,6 +8,7 @@ const VIEW_KEYS: Record<string, View> = { "1": "persp", "2": "top", "3": "front"
 export const HELP: readonly (readonly [string, string])[] = [
   ["Space", "play, pause"],
   ["← →", "one frame; with Shift ten"],
+  ["↑ ↓", "previous, next kind of a patch set"],
   ["Home End", "begin, end"],
   ["− +", "slower, faster"],
   ["1 2 3", "perspective, top, front"],
@@ -18,11 +19,20 @@ export const HELP: readonly (readonly [string, string])[] = [
   ["Esc", "let go"],
 ];
 
-export function installKeys(store: Store, player: Player, next: { color: () => void; outlines: () => void }): void {
+/** What comes next in a list that others know. */
+export interface Next {
+  color: () => void;
+  outlines: () => void;
+  kind: (step: 1 | -1) => void;
+}
+
+export function installKeys(store: Store, player: Player, next: Next): void {
   const actions: Record<string, (event: KeyboardEvent) => void> = {
     " ": () => player.toggle(),
     ArrowLeft: (e) => player.step(e.shiftKey ? -10 : -1),
     ArrowRight: (e) => player.step(e.shiftKey ? 10 : 1),
+    ArrowUp: () => next.kind(-1),
+    ArrowDown: () => next.kind(1),
     Home: () => player.seek(0),
     End: () => player.seek(Number.MAX_VALUE),
     "-": () => player.faster(-1),
@@ -39,6 +49,8 @@ export function installKeys(store: Store, player: Player, next: { color: () => v
   };
   window.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.target instanceof HTMLInputElement && !["ArrowUp", "ArrowDown", "Escape"].includes(event.key)) return;
+    if (event.target instanceof HTMLInputElement && event.key === "Escape") event.target.blur();
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     const view = VIEW_KEYS[key];
     const action = actions[key];

@@ -1,0 +1,137 @@
+"""People as small figures seen from the side: bodies as capsules, limb by limb from back to front."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+
+from crowdquilt._core import PatchSet, kind_capsules, kind_positions
+from crowdquilt.plot.style import INK, Colour, mix
+
+# The capsules of a body by limb: neck, trunk and head, then legs, then arms. The neck is added here.
+LIMBS = ([16, 0, 1, 2, 3], [4, 6, 8], [5, 7, 9], [10, 12, 14], [11, 13, 15])
+HEAD = 3
+SHOULDERS = 2
+HEAD_JOINT = 13
+NECK_RADIUS = 0.052
+OUTLINE = 0.022
+PITCH = np.radians(7)
+TURNED = np.radians(24)  # away from straight from the side
+
+
+@dataclass(frozen=True)
+class View:
+    """A far eye, a little above the people. `across` is the ground direction (x, z) that points right on the sheet."""
+
+    across: np.ndarray
+
+    @staticmethod
+    def beside(heading: float) -> View:
+        """Somebody of this heading goes to the right on the sheet, and a little towards the eye."""
+        return View.along(np.array([np.sin(heading), np.cos(heading)]))
+
+    @staticmethod
+    def along(line: np.ndarray) -> View:
+        """The line goes to the right on the sheet, and a little towards the eye."""
+        x, z = line / max(float(np.hypot(*line)), 1e-9)
+        return View(np.array([x * np.cos(TURNED) + z * np.sin(TURNED), z * np.cos(TURNED) - x * np.sin(TURNED)]))
+
+    @property
+    def near(self) -> np.ndarray:
+        """The ground direction towards the eye."""
+        x, z = self.across
+        return np.array([-z, x])
+
+    def from_above(self, ground: np.ndarray) -> np.ndarray:
+        """(n, 2) ground points on a map whose lower edge is where the eye is; the second figure grows upwards."""
+        return np.stack([ground @ self.across, -(ground @ self.near)], axis=-1)
+
+    def project(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Points (..., 3) as places (..., 2) on the sheet, metres, and depths (...,), larger is nearer."""
+        ground, up = points[..., [0, 2]], points[..., 1]
+        near = ground @ self.near
+        places = np.stack([ground @ self.across, up * np.cos(PITCH) - near * np.sin(PITCH)], axis=-1)
+        return places, near * np.cos(PITCH) + up * np.sin(PITCH)
+
+
+def bodies_of(patches: PatchSet, kind: int, role: int) -> np.ndarray:
+    """(frames, capsules, 7) the capsules of a role's body, a neck included."""
+    capsules = kind_capsules(patches, kind, role)
+    joints = kind_positions(patches, kind, role)
+    chest = (capsules[:, SHOULDERS, :3] + capsules[:, SHOULDERS, 3:6]) / 2
+    neck = np.concatenate([chest, joints[:, HEAD_JOINT], np.full((len(joints), 1), NECK_RADIUS)], axis=1)
+    return np.concatenate([capsules, neck[:, None]], axis=1)
+
+
+def stadiums(ends: np.ndarray, radii: np.ndarray, corners: int = 9) -> np.ndarray:
+    """(n, 2 corners, 2) outlines of capsules whose ends (n, 2, 2) are on the sheet."""
+    a, b = ends[:, 0], ends[:, 1]
+    along = np.arctan2(*(b - a).T[::-1])
+    half = along[:, None] + np.pi / 2 + np.linspace(0, np.pi, corners)
+    cap = radii[:, None, None] * np.stack([np.cos(half), np.sin(half)], axis=-1)
+    return np.concatenate([a[:, None] + cap, b[:, None] - cap], axis=1)
+
+
+def shapes(body: np.ndarray, view: View, colour: Colour) -> tuple[list[np.ndarray], list[Colour], float]:
+    """What to fill, in order, to paint one body (capsules, 7), in metres on the sheet; and how near it is."""
+    ends, depths = view.project(body[:, :6].reshape(-1, 2, 3))
+    edge = mix(colour, INK, 0.8)
+    outlines, bodies = (stadiums(ends, body[:, 6] + grow) for grow in (OUTLINE, 0.0))
+    near = depths.mean(axis=1)
+    polygons: list[np.ndarray] = []
+    fills: list[Colour] = []
+    for limb in sorted(LIMBS, key=lambda limb: float(near[limb].mean())):
+        polygons += [outlines[i] for i in limb]
+        fills += [edge] * len(limb)
+        # What is behind the middle of the body is in its shade.
+        shade = 0.30 * float(np.clip((near.mean() - near[limb].mean()) / 0.25, 0, 1))
+        for i in limb:
+            polygons.append(bodies[i])
+            fills.append(mix(mix(colour, "white", 0.32 if i in (HEAD, len(body) - 1) else 0.0), INK, shade))
+    return polygons, fills, float(near.mean())
+
+
+def draw_people(
+    axes: Axes, bodies: list[tuple[np.ndarray, Colour]], view: View, place: Any, scale: Any, zorder: float = 5
+) -> None:
+    """Paint bodies and their shadows, the farthest first.
+
+    `place` is where the origin is, `scale` how many of the axes' units are a metre to the right and upwards.
+    """
+    place, scale = np.asarray(place), np.asarray(scale)
+    painted = sorted((shapes(body, view, colour) for body, colour in bodies), key=lambda p: p[2])
+    spots = [spot(body, view) for body, _ in bodies]
+    axes.add_collection(
+        PolyCollection(
+            [place + scale * s for s in spots],
+            facecolors=(0.15, 0.14, 0.12, 0.13),
+            edgecolors="none",
+            zorder=zorder - 1,
+        )
+    )
+    polygons = [place + scale * polygon for p in painted for polygon in p[0]]
+    fills = [fill for p in painted for fill in p[1]]
+    axes.add_collection(PolyCollection(polygons, facecolors=fills, edgecolors="none", zorder=zorder))
+
+
+def spot(body: np.ndarray, view: View) -> np.ndarray:
+    """The outline of the shadow under a body: a flat ellipse about what is lowest."""
+    ends = body[:, :6].reshape(-1, 3)
+    lowest = ends[ends[:, 1] < ends[:, 1].min() + 0.25]
+    middle = lowest.mean(axis=0) * [1, 0, 1]
+    wide = 0.2 + 0.5 * float(np.ptp(lowest[:, [0, 2]] @ view.across))
+    turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    ellipse = np.stack([wide * np.cos(turn), 0.07 * np.sin(turn)], axis=-1)
+    return np.asarray(view.project(middle)[0] + ellipse)
+
+
+def extent(bodies: list[np.ndarray], view: View) -> tuple[np.ndarray, np.ndarray]:
+    """The lower left and the upper right corner of some bodies on the sheet, metres."""
+    all_of = np.concatenate(bodies)
+    ends, _ = view.project(all_of[:, :6].reshape(-1, 2, 3))
+    reach = (all_of[:, 6] + OUTLINE)[:, None, None]
+    return (ends - reach).min(axis=(0, 1)), (ends + reach).max(axis=(0, 1))
