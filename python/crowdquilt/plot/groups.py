@@ -35,11 +35,13 @@ def groups(patches: PatchSet, path: str | FilePath | None = None, dpi: int = 150
     found = connectivity(patches)
     names = ordered([g for component in found.components for g in component.groups], found)
     places = around(len(names))
+    if len(names):
+        places = places - (places.max(axis=0) + places.min(axis=0)) / 2
     half = np.abs(places).max(axis=0, initial=0.0) + NODE + 0.85
     notes = notes_of(found)
     wide = max(2 * half[0], 8.2)
     rows = len(names) + 1
-    foot = 0.5 + 0.26 * rows + 0.24 * len(notes) + 0.35
+    foot = 0.4 + 0.26 * rows + 0.24 * len(notes) + 0.1
     tall = 1.0 + 2 * half[1] + foot
     page = style.new_figure(wide, tall)
     axes = page.add_axes((0, foot / tall, 1, 2 * half[1] / tall))
@@ -157,7 +159,7 @@ def links(axes: Axes, found: Connectivity, where: dict[str, np.ndarray], faulty:
         width = 0.8 + 0.4 * float(np.log2(1 + link.alone + link.together))
         arrow(axes, where[link.entry], where[link.exit], colour, width, counts, dashed=not link.alone)
     for entry, exit_ in found.missing:
-        arrow(axes, where[entry], where[exit_], FAULT, 1.6, [("missing", FAULT)], dashed=True, bend=0.42)
+        arrow(axes, where[entry], where[exit_], FAULT, 1.6, [("missing", FAULT)], dashed=True, bend=0.3)
 
 
 def arrow(
@@ -168,7 +170,7 @@ def arrow(
     width: float,
     counts: list[tuple[str, str]],
     dashed: bool,
-    bend: float = 0.14,
+    bend: float = 0.07,
 ) -> None:
     """An arrow from group to group, bent to its left so that both ways are seen, or a loop; counts in its middle."""
     if np.allclose(a, b):
