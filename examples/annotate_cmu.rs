@@ -141,6 +141,7 @@ fn annotate(takes: &[&str], rows: &[Row], motions: &[Motion], exemplars: &[Exemp
     TakeFile {
         format: "crowdquilt-take".into(),
         version: 1,
+        description: String::new(),
         people: takes.iter().map(|take| index.rows[*take].clone()).collect(),
         name,
         plants: Vec::new(),

@@ -1,14 +1,17 @@
 //! From captures to a patch set: takes are collected, their people imported and retargeted, those that nobody annotated
 //! annotate themselves, and all are cut.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::PatchSet;
 use super::annotate::{AnnotateOptions, Annotation, annotate};
+use super::connectivity::connectivity;
 use super::cut::{CutOptions, Source, cut, load_take};
+use super::mirror::MIRRORED;
+use super::{Fragment, PatchKind, PatchSet};
 use crate::motion::Motion;
 use crate::motion::collection::{Collected, collect};
 use crate::{Error, Result};
@@ -33,6 +36,8 @@ pub struct Made {
     pub annotation: Option<Annotation>,
     /// Indices into `takes` of those.
     pub found_in: Vec<usize>,
+    /// Names of kinds that were found but left out, because they lead where nobody can go on, or nobody comes from.
+    pub left_out: Vec<String>,
 }
 
 /// What is being done.
@@ -86,8 +91,46 @@ pub fn make_with(path: &Path, options: &MakeOptions, report: &(dyn Fn(Step) -> b
         .zip(motions)
         .map(|(c, motions)| Source { origin: c.origin.clone(), take: c.take.clone(), motions })
         .collect();
-    let set = cut(&sources, &options.cut)?;
-    Ok(Made { set, takes, annotation, found_in: bare })
+    let mut set = cut(&sources, &options.cut)?;
+    let found: BTreeSet<&str> = bare.iter().flat_map(|&i| &takes[i].take.patches).map(|p| p.name.as_str()).collect();
+    let left_out = close(&mut set, |kind| found.contains(kind.name.trim_end_matches(MIRRORED)));
+    Ok(Made { set, takes, annotation, found_in: bare, left_out })
+}
+
+/// Leaves kinds out that lead out of, or into, the part of the set in which people can go on for ever, as long as they
+/// `may` be left out; their names.
+fn close(set: &mut PatchSet, may: impl Fn(&PatchKind) -> bool) -> Vec<String> {
+    let mut left_out = Vec::new();
+    loop {
+        let found = connectivity(set);
+        let Some(main) = found.components.iter().find(|c| c.main && c.lasting) else { return left_out };
+        let inside = |f: &Fragment| main.groups.contains(&f.entry_group) && main.groups.contains(&f.exit_group);
+        let before = set.kinds.len();
+        set.kinds.retain(|kind| {
+            let stays = kind.fragments.iter().all(inside) || !may(kind);
+            left_out.extend((!stays).then(|| kind.name.clone()));
+            stays
+        });
+        if set.kinds.len() == before {
+            drop_unused_groups(set);
+            return left_out;
+        }
+    }
+}
+
+fn drop_unused_groups(set: &mut PatchSet) {
+    let mut used = vec![false; set.groups.len()];
+    for f in set.kinds.iter().flat_map(|k| &k.fragments) {
+        used[f.entry_group as usize] = true;
+        used[f.exit_group as usize] = true;
+    }
+    let index: Vec<u32> = used.iter().scan(0, |next, &u| Some(std::mem::replace(next, *next + u32::from(u)))).collect();
+    for f in set.kinds.iter_mut().flat_map(|k| &mut k.fragments) {
+        f.entry_group = index[f.entry_group as usize];
+        f.exit_group = index[f.exit_group as usize];
+    }
+    let mut keep = used.into_iter();
+    set.groups.retain(|_| keep.next().unwrap_or(false));
 }
 
 impl Made {
@@ -119,6 +162,9 @@ impl Made {
         }
         let idle = self.takes[take].take.props.iter().filter(|p| p.held.is_empty());
         notes.extend(idle.map(|p| format!("prop {}: expected somebody who holds it, found nobody", p.name)));
+        let own = self.takes[take].take.patches.iter().filter(|p| self.left_out.contains(&p.name));
+        let left_out = own.map(|p| format!("{} is left out: nothing leads on from it, or up to it", p.name));
+        notes.extend(left_out);
         if self.takes[take].take.patches.is_empty() {
             notes.push(annotation.why_no_piece(k));
         }

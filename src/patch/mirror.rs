@@ -6,6 +6,9 @@ use crate::motion::mirror;
 /// The label of kinds that are their own mirror image, of which no copy is made.
 pub(super) const SYMMETRIC: &str = "symmetric";
 
+/// What the names of mirrored copies end with.
+pub(super) const MIRRORED: &str = "-mirror";
+
 /// The kind seen in a mirror, called `NAME-mirror`; its ports' pose groups swap sides (`walk_left`, `walk_right`)
 /// and are added to `groups` where they are new.
 pub fn mirrored(kind: &PatchKind, groups: &mut Vec<PoseGroup>) -> PatchKind {
@@ -20,7 +23,7 @@ pub fn mirrored(kind: &PatchKind, groups: &mut Vec<PoseGroup>) -> PatchKind {
         }
     });
     PatchKind {
-        name: format!("{}-mirror", kind.name),
+        name: format!("{}{MIRRORED}", kind.name),
         fragments: fragments.collect(),
         labels: kind.labels.clone(),
         contacts: kind.contacts.iter().map(|c| Contact { a: touch(c.a), b: touch(c.b), ..*c }).collect(),

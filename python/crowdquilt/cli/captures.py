@@ -138,7 +138,7 @@ def patches(
         raise typer.BadParameter(str(error)) from None
     if not len(made.set):
         reasons = [f"{take.name}: {note}" for take in made.takes for note in take.notes]
-        raise CrowdquiltError("\n".join([f"{source}: nothing to make patches of", *reasons]))
+        raise CrowdquiltError(f"{source}: nothing to make patches of: {'; '.join(reasons)}")
     out.parent.mkdir(parents=True, exist_ok=True)
     made.set.save(out)
     if takes is not None:
@@ -157,7 +157,8 @@ def patches(
     found = set_facts(made)
     console.print(
         f"{out}: {found['kinds']} kinds and their mirror images, {found['single_person_kinds']} of one person, "
-        f"{found['pose_groups']} pose groups"
+        f"{found['pose_groups']} pose groups, {'closed' if found['closed'] else 'not closed: see crowdquilt kinds'}",
+        soft_wrap=True,
     )
 
 
@@ -170,6 +171,7 @@ def set_facts(made: patch.Made) -> dict[str, Any]:
         "single_person_kinds": alone,
         "multi_person_kinds": len(kinds) - alone,
         "pose_groups": len(made.set.groups),
+        "closed": patch.connectivity(made.set).closed,
         "takes": [
             {
                 "name": take.name,
