@@ -91,8 +91,9 @@ impl<'a> Reader<'a> {
     /// Opens a container.
     ///
     /// # Errors
-    /// Wrong magic, a newer version, cut or overlong bytes, a header that is no JSON object, arrays outside the data.
-    pub fn open(bytes: &'a [u8], magic: &[u8; 8], version: u32) -> Result<Self> {
+    /// Wrong magic, a version that is not among `versions`, cut or overlong bytes, a header that is no JSON object, arrays
+    /// outside the data.
+    pub fn open(bytes: &'a [u8], magic: &[u8; 8], versions: std::ops::RangeInclusive<u32>) -> Result<Self> {
         let what = String::from_utf8_lossy(&magic[..7]).into_owned();
         let bad = |place: &str, problem: String| Error::invalid(what.clone(), place, problem);
         if bytes.len() < PRELUDE || &bytes[..8] != magic {
@@ -106,8 +107,10 @@ impl<'a> Reader<'a> {
             ));
         }
         let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("4 bytes"));
-        if word(8) != version {
-            return Err(bad("byte 8", format!("expected version {version}, found {}", word(8))));
+        if !versions.contains(&word(8)) {
+            let (from, to) = (versions.start(), versions.end());
+            let expected = if from == to { format!("version {to}") } else { format!("version {from} to {to}") };
+            return Err(bad("byte 8", format!("expected {expected}, found {}", word(8))));
         }
         let header_len = word(12) as usize;
         let data_len = u64::from_le_bytes(bytes[16..24].try_into().expect("8 bytes")) as usize;
@@ -175,7 +178,7 @@ mod tests {
     #[test]
     fn round_trip() {
         let bytes = sample();
-        let r = Reader::open(&bytes, b"CQTEST\0\0", 3).unwrap();
+        let r = Reader::open(&bytes, b"CQTEST\0\0", 1..=3).unwrap();
         assert_eq!(r.array::<f32>("a").unwrap(), [1.0, 2.0, 3.0]);
         assert_eq!(r.array::<i16>("c").unwrap(), [-5, 6]);
         assert!(r.array::<f32>("c").is_err());
@@ -185,12 +188,13 @@ mod tests {
     fn cut_at_every_length_and_extended_is_an_error() {
         let bytes = sample();
         for n in 0..bytes.len() {
-            assert!(Reader::open(&bytes[..n], b"CQTEST\0\0", 3).is_err(), "cut at {n}");
+            assert!(Reader::open(&bytes[..n], b"CQTEST\0\0", 1..=3).is_err(), "cut at {n}");
         }
         let mut longer = bytes.clone();
         longer.push(0);
-        assert!(Reader::open(&longer, b"CQTEST\0\0", 3).is_err());
-        assert!(Reader::open(&bytes, b"CQTEST\0\0", 4).is_err());
-        assert!(Reader::open(&bytes, b"CQOTHER\0", 3).is_err());
+        assert!(Reader::open(&longer, b"CQTEST\0\0", 1..=3).is_err());
+        assert!(Reader::open(&bytes, b"CQTEST\0\0", 4..=4).is_err());
+        assert!(Reader::open(&bytes, b"CQTEST\0\0", 1..=2).is_err());
+        assert!(Reader::open(&bytes, b"CQOTHER\0", 1..=3).is_err());
     }
 }

@@ -50,6 +50,7 @@ def inspect_crowd(crowd: Crowd) -> dict[str, Any]:
         "instances": summary.instances,
         "kinds": summary.kinds,
         "multi_person_share": summary.multi_person_share,
+        "props": summary.props,
         "danglings": summary.danglings,
         "seconds": crowd.seconds,
         "fps": crowd.fps,

@@ -19,6 +19,7 @@ def build(crowd: Crowd, report: Report, outcome: Outcome | None = None) -> dict[
         "instances": summary.instances,
         "kinds": summary.kinds,
         "multi_person_share": round(summary.multi_person_share, 4),
+        "props": summary.props,
         "danglings": summary.danglings,
         "solve_secs": round(outcome.solve_secs, 3) if outcome else None,
         "status": outcome.status if outcome else None,

@@ -73,13 +73,14 @@ fn row(r: &core::Row) -> Row {
 }
 
 /// The figures one quotes of a tiling: people, placed patches, kinds in use, share (0 to 1) of the people's time
-/// inside patches of two or more, ports without a partner.
+/// inside patches of two or more, boxes, ports without a partner.
 #[pyclass(frozen, get_all, module = "crowdquilt")]
 pub struct Summary {
     characters: usize,
     instances: usize,
     kinds: usize,
     multi_person_share: f64,
+    props: usize,
     danglings: usize,
 }
 
@@ -98,6 +99,7 @@ pub fn summary(py: Python<'_>, crowd: &Crowd) -> PyResult<Summary> {
         instances: s.instances,
         kinds: s.kinds_used,
         multi_person_share: s.multi_person_share,
+        props: s.props,
         danglings: s.danglings,
     })
 }

@@ -39,7 +39,7 @@ mod _core {
     #[pymodule_export]
     use super::samples::write_samples;
     #[pymodule_export]
-    use super::stage::{Crowd, Fragment};
+    use super::stage::{Crowd, Fragment, Prop};
     #[pymodule_export]
     use super::tiling::{Outcome, Progress, Scene, tile};
 

@@ -21,10 +21,11 @@ use crate::progress::watched;
 /// Takes without patches annotate themselves: events between people are found, and a few recurring poses at which
 /// patches begin and end. `captures` is a folder that captures are looked up in first. `threshold` is how near two poses
 /// of a group are (m), `groups` how many groups there are at most, `alone` how many patches of one person are kept,
-/// `touch_gap` how near surfaces touch (m), `near` how near people react to each other (m). `progress` is called with
+/// `touch_gap` how near surfaces touch (m), `near` how near people react to each other (m). `compose` are files
+/// (`*.compose.toml`) that compose patches by hand, or folders of them, besides those in the source folder. `progress` is called with
 /// what is being done and how much of it (0 to 1); it stops the work by returning False.
 #[pyfunction]
-#[pyo3(signature = (source, captures=None, *, threshold=None, groups=None, alone=None, touch_gap=None, near=None, progress=None))]
+#[pyo3(signature = (source, captures=None, *, threshold=None, groups=None, alone=None, touch_gap=None, near=None, compose=None, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn make_patches(
     py: Python<'_>,
@@ -35,9 +36,10 @@ pub fn make_patches(
     alone: Option<usize>,
     touch_gap: Option<f32>,
     near: Option<f32>,
+    compose: Option<Vec<PathBuf>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Made> {
-    let mut options = core::MakeOptions::default();
+    let mut options = core::MakeOptions { compose: compose.unwrap_or_default(), ..Default::default() };
     options.cut.captures = captures;
     let annotate = &mut options.annotate;
     set(&mut annotate.boundaries.threshold, threshold, "threshold", 0.01..1.0)?;

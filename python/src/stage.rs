@@ -13,7 +13,7 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
 use crate::error::run;
-use crate::numbers::{points2, points3, rotations, stack};
+use crate::numbers::{points2, points3, rotations, stack, table};
 use crate::patch::{Kind, kinds};
 
 /// One fragment of an instance in a person's life.
@@ -59,6 +59,54 @@ impl Fragment {
     }
 }
 
+/// A box that people hold in both hands, pass, take up and put down. It stays level.
+#[pyclass(frozen, module = "crowdquilt")]
+pub struct Prop(core::Prop);
+
+#[pymethods]
+impl Prop {
+    /// Name, e.g. `box`.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// (3,): full extents in metres: width between the hands, height, depth.
+    #[getter]
+    fn size<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_slice(py, &self.0.size)
+    }
+
+    /// First and last frame at which it is there.
+    #[getter]
+    fn span(&self) -> (u32, u32) {
+        (self.0.begin, self.0.end())
+    }
+
+    /// (frames, 3): its middle at every frame, metres.
+    #[getter]
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        points3(py, &self.0.places.iter().map(|p| p.middle).collect::<Vec<_>>())
+    }
+
+    /// (frames,): its turn about the vertical at every frame, radians, not wrapped.
+    #[getter]
+    fn headings<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_iter(py, self.0.places.iter().map(|p| p.heading))
+    }
+
+    /// Who holds it: person, first and last frame, in order; otherwise it rests.
+    #[getter]
+    fn holds(&self) -> Vec<(u32, u32, u32)> {
+        self.0.holds.iter().map(|h| (h.character, h.begin, h.end)).collect()
+    }
+
+    fn __repr__(&self) -> String {
+        let (begin, end) = self.span();
+        format!("Prop({:?}, frames={begin}..={end}, holds={})", self.0.name, self.0.holds.len())
+    }
+}
+
 /// A finished crowd: baked, playable at any time. Metres, seconds, y up; `len(crowd)` is the number of people.
 #[pyclass(frozen, module = "crowdquilt")]
 pub struct Crowd(pub Arc<core::Crowd>);
@@ -83,6 +131,7 @@ impl Crowd {
     }
 }
 
+type Things<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray2<f32>>);
 type People<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray3<f32>>);
 
 #[pymethods]
@@ -216,6 +265,19 @@ impl Crowd {
     /// The patches a person goes through, in order.
     fn fragments(&self, person: usize) -> PyResult<Vec<Fragment>> {
         Ok(self.person(person)?.fragments.iter().cloned().map(Fragment).collect())
+    }
+
+    /// The boxes that people carry.
+    #[getter]
+    fn props(&self) -> Vec<Prop> {
+        self.0.props.iter().cloned().map(Prop).collect()
+    }
+
+    /// Every box there at a time: (n,) indices and (n, 4) middles and headings as x, y, z in metres, radians.
+    fn props_at<'py>(&self, py: Python<'py>, secs: f32) -> PyResult<Things<'py>> {
+        let (indices, places): (Vec<u32>, Vec<_>) = self.0.props_at(secs).map(|(i, p)| (i as u32, p)).unzip();
+        let numbers = places.iter().flat_map(|p| [p.middle.x, p.middle.y, p.middle.z, p.heading]).collect();
+        Ok((PyArray1::from_vec(py, indices), table(py, numbers, 4)?))
     }
 
     /// Everybody there at a time: (n,) indices and (n, joints, 3) joints in the world, metres.

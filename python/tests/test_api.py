@@ -167,3 +167,20 @@ def test_stubs_name_what_the_core_has_and_nothing_else() -> None:
             members = {item.name for item in node.body if isinstance(item, ast.FunctionDef)}
             real = {m for m in vars(getattr(_core, name)) if not m.startswith("_")}
             assert {m for m in members if not m.startswith("_")} == real, name
+
+
+def test_boxes_are_where_the_hands_are(small: cq.Outcome) -> None:
+    crowd = small.crowd
+    assert cq.check.summary(crowd).props == len(crowd.props) > 0
+    hands = [crowd.joints.index(name) for name in ("left_hand", "right_hand")]
+    for prop in crowd.props:
+        begin, end = prop.span
+        assert prop.positions.shape == (end - begin + 1, 3) and prop.headings.shape == (end - begin + 1,)
+        assert prop.size.shape == (3,) and prop.name == "box"
+        for person, first, last in prop.holds:
+            for frame in (first, (first + last) // 2, last):
+                wrists = crowd.positions(person, frame)[hands]
+                assert np.linalg.norm(wrists - prop.positions[frame - begin], axis=1).max() < 0.4
+    there, places = crowd.props_at(2.0)
+    assert places.shape == (len(there), 4)
+    np.testing.assert_allclose(places[0, :3], crowd.props[there[0]].positions[60 - crowd.props[there[0]].span[0]], atol=1e-4)

@@ -4,7 +4,7 @@
 use super::part::Part;
 use super::report::{Faults, Row};
 use crate::motion::JOINT_COUNT;
-use crate::stage::{Character, Crowd};
+use crate::stage::{Character, Crowd, Holding, Prop};
 
 /// More than a year of motion; keeps the arithmetic of frames far from overflow.
 const LAST_FRAME: u32 = 1 << 30;
@@ -50,7 +50,22 @@ pub(super) fn references(crowd: &Crowd) -> Row {
             faults.add(|| format!("character {c}, fragment {k}: no such role, or not as long as the capture"));
         }
     }
+    for (i, prop) in crowd.props.iter().enumerate().filter(|(_, p)| !prop_is_sound(crowd, p)) {
+        let frames = prop.places.len();
+        faults.add(|| {
+            format!("box {i}: held by nobody who exists, or without size, or its {frames} frames are not places")
+        });
+    }
     faults.row(0, "references")
+}
+
+fn prop_is_sound(crowd: &Crowd, prop: &Prop) -> bool {
+    let within = |h: &Holding| h.begin <= h.end && prop.begin <= h.begin && h.end <= prop.end();
+    !prop.places.is_empty()
+        && prop.begin <= LAST_FRAME
+        && prop.size.iter().all(|&s| s > 0.0 && s.is_finite())
+        && prop.places.iter().all(|p| p.middle.is_finite() && p.heading.is_finite())
+        && prop.holds.iter().all(|h| (h.character as usize) < crowd.characters.len() && within(h))
 }
 
 fn fragment_is_sound(crowd: &Crowd, character: &Character, k: usize) -> bool {

@@ -11,6 +11,7 @@
 //! | 4, 7 | bodies stay apart, inside the region and out of obstacles | `bodies.rs`, `depth.rs` |
 //! | 5 | people who touch in the capture still touch | `contact.rs` |
 //! | 6 | planted feet stay, joints turn no further than captured | `plant.rs`, `joint.rs` |
+//! | 2, 4, 5, 7 | boxes are held or rest, palms are on them, they enter nothing and do not fly | `prop.rs` |
 //!
 //! Clause 8 (same seed, same bytes) is a property of the solver and no crowd can show it.
 
@@ -23,6 +24,8 @@ mod joint;
 mod limits;
 mod part;
 mod plant;
+mod prop;
+mod prop_shape;
 mod report;
 mod speed;
 mod stitch;
@@ -59,6 +62,7 @@ pub fn check_with(crowd: &Crowd, limits: &Limits) -> Report {
     rows.extend(contact::rows(crowd, &parts, limits));
     rows.extend(plant::rows(crowd, &parts, limits));
     rows.extend(joint::rows(crowd, &parts, limits));
+    rows.extend(prop::rows(crowd, &parts, limits));
     rows.sort_by_key(|row| row.clause);
     Report { rows }
 }

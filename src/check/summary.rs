@@ -14,6 +14,8 @@ pub struct Summary {
     pub kinds_used: usize,
     /// Share of all people's time in the domain that is spent inside patches of two or more, in [0, 1].
     pub multi_person_share: f64,
+    /// Boxes that people carry, or that lie there.
+    pub props: usize,
     /// Entries after the first frame and exits before the last.
     pub danglings: usize,
 }
@@ -40,6 +42,7 @@ pub fn summary(crowd: &Crowd) -> Summary {
         instances: crowd.instances.len(),
         kinds_used: used.iter().filter(|&&u| u).count(),
         multi_person_share: if all == 0 { 0.0 } else { together as f64 / all as f64 },
+        props: crowd.props.len(),
         danglings: chain::danglings(crowd).count(),
     }
 }

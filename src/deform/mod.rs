@@ -2,10 +2,13 @@
 
 mod band;
 mod limits;
+mod nodes;
+mod strain;
 mod strand;
 mod system;
 mod web;
 
 pub use limits::Limits;
+pub use strain::{Broken, Most, Strain};
 pub use strand::Strand;
-pub use web::{Deformed, Handle, Hold, Web};
+pub use web::{Bond, Deformed, Handle, Hold, Thread, Web};

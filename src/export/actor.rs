@@ -125,8 +125,41 @@ impl Writer {
             });
             self.scene.push(body);
         }
-        self.presence_keys(top, character);
+        self.presence_keys(top, character.begin, character.end());
         self.motion_keys(&nodes, character, keys);
+    }
+
+    /// Writes a stiff thing that is there from frame `begin` on, at a place per frame.
+    pub(super) fn thing(
+        &mut self,
+        name: &str,
+        mesh: Index<Mesh>,
+        begin: u32,
+        places: &[(Vec3, Quat)],
+        extras: &serde_json::Value,
+    ) {
+        let Some(first) = places.first() else { return };
+        let node = self.root.push(Node {
+            name: Some(name.into()),
+            mesh: Some(mesh),
+            translation: Some(first.0.to_array()),
+            rotation: Some(UnitQuaternion(first.1.to_array())),
+            extras: Some(serde_json::value::to_raw_value(extras).expect("plain data")),
+            ..Default::default()
+        });
+        self.scene.push(node);
+        self.presence_keys(node, begin, begin + places.len() as u32 - 1);
+        // Keys at both ends of every time over which it lies still.
+        let last = places.len() - 1;
+        let differs = |i: usize| i == 0 || i == last || places[i] != places[i - 1] || places[i] != places[i + 1];
+        let kept: Vec<usize> = (0..=last).filter(|&i| differs(i)).collect();
+        let frames: Vec<u32> = kept.iter().map(|&i| begin + i as u32).collect();
+        let ways: Vec<Vec3> = kept.iter().map(|&i| places[i].0).collect();
+        let turns = continuous(&kept.iter().map(|&i| places[i].1).collect::<Vec<_>>());
+        let output = self.vectors.accessor(&mut self.root, &ways, ComponentType::F32, Type::Vec3);
+        self.channel(node, Property::Translation, frames.clone(), output, Interpolation::Linear);
+        let output = self.rotations.accessor(&mut self.root, &turns, ComponentType::I16, Type::Vec4);
+        self.channel(node, Property::Rotation, frames, output, Interpolation::Linear);
     }
 
     /// The bones' nodes, posed as in the person's first frame.
@@ -155,18 +188,19 @@ impl Writer {
         (first..first + bones.len() as u32).map(Index::new).collect()
     }
 
-    fn presence_keys(&mut self, top: Index<Node>, character: &Character) {
+    /// Hides what hangs from a node outside of some frames.
+    fn presence_keys(&mut self, top: Index<Node>, begin: u32, end: u32) {
         let (mut frames, mut scales) = (Vec::new(), Vec::new());
         let mut key = |frame: u32, scale: f32| {
             frames.push(frame);
             scales.push(Vec3::splat(scale));
         };
-        if character.begin > 0 {
+        if begin > 0 {
             key(0, 0.0);
         }
-        key(character.begin, 1.0);
-        if character.end() < self.last_frame {
-            key(character.end() + 1, 0.0);
+        key(begin, 1.0);
+        if end < self.last_frame {
+            key(end + 1, 0.0);
         }
         if frames.len() > 1 {
             let output = self.vectors.accessor(&mut self.root, &scales, ComponentType::F32, Type::Vec3);

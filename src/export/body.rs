@@ -189,23 +189,28 @@ fn cuts(
     cuts
 }
 
+/// A material that does not shine.
+pub(super) fn plain_material(root: &mut Root, name: &str, color: u32, roughness: f32) -> Index<Material> {
+    let [_, r, g, b] = color.to_be_bytes();
+    root.push(Material {
+        name: Some(name.into()),
+        pbr_metallic_roughness: PbrMetallicRoughness {
+            base_color_factor: PbrBaseColorFactor([linear(r), linear(g), linear(b), 1.0]),
+            metallic_factor: StrengthFactor(0.0),
+            roughness_factor: StrengthFactor(roughness),
+            ..Default::default()
+        },
+        ..Default::default()
+    })
+}
+
 /// The material of that colour; the one that is there already if another look has it too.
 fn material(root: &mut Root, color: u32, (cloth, rough): Cloth) -> Index<Material> {
     let name = format!("{cloth}_{color:06x}");
     if let Some(i) = root.materials.iter().position(|m| m.name.as_ref() == Some(&name)) {
         return Index::new(i as u32);
     }
-    let [_, r, g, b] = color.to_be_bytes();
-    root.push(Material {
-        name: Some(name),
-        pbr_metallic_roughness: PbrMetallicRoughness {
-            base_color_factor: PbrBaseColorFactor([linear(r), linear(g), linear(b), 1.0]),
-            metallic_factor: StrengthFactor(0.0),
-            roughness_factor: StrengthFactor(rough),
-            ..Default::default()
-        },
-        ..Default::default()
-    })
+    plain_material(root, &name, color, rough)
 }
 
 /// An sRGB byte as a linear fraction.

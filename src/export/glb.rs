@@ -4,13 +4,15 @@
 //! parent of the joints and carries `extras: { person, begin_secs, end_secs, build }`; while the person is absent its
 //! scale is keyed to 0, which hides the mesh, since a skinned mesh follows its joints alone. The mesh node
 //! `person_N_body` is at the root of the scene too, as viewers want it. Vertices and inverse bind matrices are shared by
-//! people of one build, triangles and key times by all.
+//! people of one build, triangles and key times by all. Boxes are nodes `box_N` at the root of the scene, with
+//! `extras: { box, size }`, hidden in the same way while they are not there.
 
 use gltf_json::{Asset, Index, Root, Scene};
 
 use super::actor::{Keys, Writer};
 use super::avatar::{Avatar, Graft};
 use super::body::Wardrobe;
+use super::boxes;
 use super::buffer::assemble;
 use super::look::dealt;
 use crate::motion::JOINT_COUNT;
@@ -37,12 +39,14 @@ pub fn glb_with(crowd: &Crowd, avatars: &[Avatar]) -> Vec<u8> {
         mannequins(crowd, &people, root, binary)
     } else {
         let grafts: Vec<Graft> = avatars.iter().map(|a| a.graft(&mut root, &mut binary)).collect();
+        let meshes = boxes::meshes(&mut root, &mut binary, crowd);
         let mut writer = Writer::new(root, crowd.domain.last_frame);
         for (person, character) in people {
             let number = dealt(person, AVATAR_SALT, avatars.len());
             let (bones, keys) = avatars[number].play(character, &grafts[number]);
             writer.person(person, character, &bones, &grafts[number].dresses, &keys);
         }
+        boxes::write(&mut writer, crowd, &meshes);
         writer.finish(binary)
     }
 }
@@ -54,11 +58,13 @@ fn mannequins(crowd: &Crowd, people: &[(usize, &Character)], mut root: Root, mut
     let (builds, own) = crowd.builds();
     let numbers: Vec<(usize, usize)> = people.iter().map(|&(person, _)| (person, own[person])).collect();
     let wardrobe = Wardrobe::new(&mut root, &mut binary, &builds, &numbers);
+    let meshes = boxes::meshes(&mut root, &mut binary, crowd);
     let mut writer = Writer::new(root, crowd.domain.last_frame);
     for &(person, character) in people {
         let (bones, dress) = (wardrobe.bones(own[person]), wardrobe.dress(person, own[person]));
         writer.person(person, character, bones, &[dress], &keys(character));
     }
+    boxes::write(&mut writer, crowd, &meshes);
     writer.finish(binary)
 }
 

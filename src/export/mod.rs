@@ -7,6 +7,7 @@
 mod actor;
 mod avatar;
 mod body;
+mod boxes;
 mod buffer;
 mod clip;
 mod clip_glb;

@@ -7,6 +7,7 @@ pub mod bvh;
 mod clip;
 pub mod collection;
 pub mod contacts;
+pub(crate) mod fade;
 mod fbx;
 pub mod gait;
 mod gltf;

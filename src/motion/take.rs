@@ -169,7 +169,7 @@ pub struct TakePatch {
     pub core: Option<[f32; 2]>,
 }
 
-/// A box that people of the take hold in both hands, or that rests on the ground between holders.
+/// A box that people of the take hold in both hands, or that rests where it was put down or will be picked up.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TakeProp {
@@ -177,7 +177,11 @@ pub struct TakeProp {
     pub name: String,
     /// Full extents in metres: width between the hands, height, depth.
     pub size: [f32; 3],
-    /// Who holds it from when to when, in order; the last holder begins where the one before ends.
+    /// Where the box's middle is, seen from the middle between the palms: up, and ahead of the person. Metres.
+    #[serde(default)]
+    pub grip: [f32; 2],
+    /// Who holds it from when to when, in order. Between two holds it rests, unless the second begins when the first
+    /// ends or before: then it is passed, and over the time that they share both hold it.
     pub held: Vec<TakeHold>,
 }
 
@@ -225,6 +229,36 @@ pub struct TakeFile {
     pub props: Vec<TakeProp>,
 }
 
+/// Longest edge of a box that somebody can carry, metres.
+const LARGEST_BOX: f32 = 3.0;
+
+impl TakeProp {
+    /// What is wrong with the prop itself, each with its place in it.
+    fn problems(&self) -> Vec<(String, String)> {
+        let mut problems = Vec::new();
+        if !self.size.iter().all(|&s| s > 0.0 && s <= LARGEST_BOX) {
+            let found = format!("expected three extents above 0 and up to {LARGEST_BOX} m, found {:?}", self.size);
+            problems.push((".size".into(), found));
+        }
+        if !self.grip.iter().all(|g| g.abs() <= LARGEST_BOX) {
+            problems.push((".grip".into(), format!("expected up to {LARGEST_BOX} m, found {:?}", self.grip)));
+        }
+        for (k, pair) in self.held.windows(2).enumerate() {
+            if !(pair[0].begin < pair[1].begin && pair[0].end < pair[1].end) {
+                let found = "expected to begin and to end after the hold before";
+                problems.push((
+                    format!(".held[{}]", k + 1),
+                    format!("{found}, found {} to {}", pair[1].begin, pair[1].end),
+                ));
+            } else if pair[0].person == pair[1].person && pair[1].begin <= pair[0].end {
+                let found = format!("expected another person to take over, found person {} again", pair[1].person);
+                problems.push((format!(".held[{}]", k + 1), found));
+            }
+        }
+        problems
+    }
+}
+
 impl TakeFile {
     /// Reads and checks a take file.
     ///
@@ -257,7 +291,8 @@ impl TakeFile {
     }
 
     /// All problems: another format or version, no people, people who do not exist, times that are not finite,
-    /// negative or end before they begin, patches without roles or with one person twice.
+    /// negative or end before they begin, patches without roles or with one person twice, props without size or held
+    /// by people out of order.
     pub fn validate(&self) -> Vec<Error> {
         let mut problems = Vec::new();
         let mut bad = |place: String, problem: String| problems.push(Error::invalid("take", place, problem));
@@ -280,8 +315,11 @@ impl TakeFile {
         for (i, p) in self.ports.iter().enumerate() {
             span(format!("ports[{i}]"), p.person, p.time, p.time);
         }
-        for (i, hold) in self.props.iter().flat_map(|p| &p.held).enumerate() {
-            span(format!("props: hold {i}"), hold.person, hold.begin, hold.end);
+        for (i, prop) in self.props.iter().enumerate() {
+            prop.problems().into_iter().for_each(|(place, problem)| bad(format!("props[{i}]{place}"), problem));
+            for (k, hold) in prop.held.iter().enumerate() {
+                span(format!("props[{i}].held[{k}]"), hold.person, hold.begin, hold.end);
+            }
         }
         for patch in &self.patches {
             if patch.roles.is_empty() {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec2;
 
+use super::cut_props as props;
 use super::file::filed_rotation;
 use super::mirror::{add_mirrored, find_or_add};
 use super::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};
@@ -41,15 +42,14 @@ pub struct Source {
     pub motions: Vec<Motion>,
 }
 
-/// Cuts the patches of all takes, in their order, into one set. Patches in which somebody holds a prop are left
-/// out: sets and crowds do not carry props yet, and hands around nothing look wrong.
+/// Cuts the patches of all takes, in their order, into one set.
 ///
 /// # Errors
 /// A role outside its capture or without a port; two patches of one name.
 pub fn cut(sources: &[Source], options: &CutOptions) -> Result<PatchSet> {
     let mut set = PatchSet::default();
     for Source { origin, take, motions } in sources {
-        for patch in take.patches.iter().filter(|p| !holds_prop(take, p)) {
+        for patch in &take.patches {
             let cutter = Cutter { take, motions, patch, options };
             let kind = cutter.kind(&mut set.groups).map_err(|e| e.in_file(origin))?;
             if set.kinds.iter().any(|k| k.name == kind.name) {
@@ -60,7 +60,7 @@ pub fn cut(sources: &[Source], options: &CutOptions) -> Result<PatchSet> {
         }
     }
     if options.mirror {
-        add_mirrored(&mut set);
+        add_mirrored(&mut set, 0);
     }
     round(&mut set);
     match set.validate().into_iter().next() {
@@ -70,16 +70,10 @@ pub fn cut(sources: &[Source], options: &CutOptions) -> Result<PatchSet> {
 }
 
 /// Rounds rotations to what a file keeps, so that a set tiles alike before and after it was saved.
-fn round(set: &mut PatchSet) {
+pub(super) fn round(set: &mut PatchSet) {
     for fragment in set.kinds.iter_mut().flat_map(|k| &mut k.fragments) {
         fragment.motion.rotations.iter_mut().for_each(|q| *q = filed_rotation(*q));
     }
-}
-
-fn holds_prop(take: &TakeFile, patch: &TakePatch) -> bool {
-    let holds = take.props.iter().flat_map(|prop| &prop.held);
-    let overlap = |role: &TakeRole, begin: f32, end: f32| role.begin < end && begin < role.end;
-    holds.into_iter().any(|h| patch.roles.iter().any(|r| r.person == h.person && overlap(r, h.begin, h.end)))
 }
 
 /// The motion of all people of a take, on its clock, with its foot plants: those of the take file where it has any,
@@ -114,7 +108,7 @@ pub fn load_take(path: &Path, take: &TakeFile, options: &CutOptions) -> Result<V
 }
 
 /// The frame nearest to a time in seconds.
-fn frame(time: f32) -> usize {
+pub(super) fn frame(time: f32) -> usize {
     (time * FPS).round() as usize
 }
 
@@ -138,6 +132,7 @@ impl Cutter<'_> {
             labels: self.patch.labels.clone(),
             contacts: contacts.collect(),
             core: self.core(start, &fragments)?,
+            props: props::of_patch(self.take, self.patch, start, &fragments).map_err(|problem| self.bad(problem))?,
             fragments,
             mirrored: false,
         })
@@ -207,7 +202,7 @@ impl Cutter<'_> {
 }
 
 /// The motion with its first heading within half a turn.
-fn upright(mut motion: Motion) -> Motion {
+pub(super) fn upright(mut motion: Motion) -> Motion {
     let first = motion.path.headings[0];
     let turns = first - crate::geom::wrap_angle(first);
     motion.path.headings.iter_mut().for_each(|h| *h -= turns);
@@ -215,7 +210,7 @@ fn upright(mut motion: Motion) -> Motion {
 }
 
 /// Moves the patch so that the mean of all path points is the origin.
-fn centre(fragments: &mut [Fragment]) {
+pub(super) fn centre(fragments: &mut [Fragment]) {
     let points = || fragments.iter().flat_map(|f| &f.motion.path.points);
     let mean = points().sum::<Vec2>() / points().count().max(1) as f32;
     fragments.iter_mut().flat_map(|f| &mut f.motion.path.points).for_each(|p| *p -= mean);

@@ -175,3 +175,56 @@ fn a_bad_capture_is_named() {
     let found = make(&path, &MakeOptions::default()).unwrap_err().to_string();
     assert!(found.contains("capture b: skeleton") && found.contains("left_hand"), "{found}");
 }
+
+/// The take with a box that both people hold in turn.
+fn with_box(held: &str) -> String {
+    let prop = format!("\"props\": [{{\"name\": \"box\", \"size\": [0.4, 0.3, 0.3], \"held\": {held}}}], \"patches\"");
+    TAKE.replacen("\"patches\"", &prop, 1)
+}
+
+#[test]
+fn boxes_are_cut_with_who_holds_them() {
+    let folder = Folder::new("box");
+    let pass = r#"[{"person": 0, "begin": 0.1, "end": 1.5}, {"person": 1, "begin": 1.5, "end": 1.8}]"#;
+    folder.write(&with_box(pass));
+    let error = PatchSet::from_folder(&folder.0).unwrap_err().to_string();
+    assert!(
+        error.contains("patch alone: prop box: person 0 hands it to person 1: expected both in the patch"),
+        "{error}"
+    );
+    let only = with_box(pass);
+    let (both, _) = only.split_once(",\n    {\"name\": \"alone\"").unwrap();
+    folder.write(&format!("{both}]}}"));
+    let set = PatchSet::from_folder(&folder.0).unwrap();
+    let prop = &set.kinds[0].props[0];
+    // The first brings it, both hold it for 8 frames, the second puts it down.
+    let holds: Vec<(u32, u32, u32)> = prop.holds.iter().map(|h| (h.role, h.begin, h.end)).collect();
+    assert_eq!(holds, [(0, 0, 34), (1, 26, 39)]);
+    assert!(prop.before.is_none() && prop.after.is_some());
+    // Its width is along the line between the hands, which point to the sides.
+    let after = prop.after.unwrap();
+    let person = set.kinds[0].fragments[1].motion.path.points[39 - 12];
+    assert!(after.heading.abs() < 1e-3 && after.ground().position.distance(person) < 0.05, "{after:?} {person}");
+    assert_eq!((set.kinds[1].carried_in(0), set.kinds[1].carried_out(1)), (Some(0), None));
+}
+
+#[test]
+fn boxes_must_make_sense() {
+    let refused = |name: &str, held: &str, says: &[&str]| {
+        let found = error(name, &with_box(held));
+        assert!(found.contains("two.take.json") && says.iter().all(|s| found.contains(s)), "{found}");
+    };
+    let hold =
+        |person: usize, begin: f32, end: f32| format!(r#"{{"person": {person}, "begin": {begin}, "end": {end}}}"#);
+    let two = |a: String, b: String| format!("[{a}, {b}]");
+    refused("box-person", &format!("[{}]", hold(4, 0.1, 0.5)), &["props[0].held[0]", "below 2, found 4"]);
+    refused("box-order", &two(hold(0, 1.0, 1.5), hold(1, 0.5, 2.0)), &["props[0].held[1]", "after the hold before"]);
+    refused("box-again", &two(hold(0, 0.1, 1.5), hold(0, 1.2, 2.0)), &["props[0].held[1]", "person 0 again"]);
+    let rests = two(hold(0, 0.1, 1.2), hold(1, 1.5, 1.8));
+    refused("box-rests", &rests, &["patch meet: prop box", "person 0 puts it down before person 1 takes it up"]);
+    let late = two(hold(0, 0.1, 0.7), hold(1, 0.6, 1.8));
+    refused("box-late", &late, &["patch meet: prop box", "expected both to be in the patch"]);
+    let size = |from: &str, to: &str| with_box("[]").replacen(from, to, 1);
+    assert!(error("box-size", &size("[0.4, 0.3", "[0.4, -0.3")).contains("props[0].size"));
+    assert!(error("box-field", &size("\"size\"", "\"sise\"")).contains("sise"));
+}

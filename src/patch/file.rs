@@ -1,18 +1,22 @@
 //! The patch-set file (`*.patches`, magic `CQPATCH`): a [container](crate::container) with these arrays over all
 //! fragments in order: `points` f32 x,z per frame; `headings`, `heights` f32 per frame; `rotations` i16 x,y,z,w per
 //! frame and joint (value / 32767).
+//!
+//! Versions: 1 had no `props`; 2 has them per kind: boxes with name, size, grip (where the middle is, seen from the
+//! middle between the palms: up, ahead), holds (role, begin, end: frames of the patch's clock) and where they rest
+//! before and after (middle, heading). Both are read, 2 is written.
 
 use std::path::Path;
 
 use glam::{Quat, Vec2};
 
-use super::{Contact, Fragment, PatchKind, PatchSet, PoseGroup};
+use super::{Contact, Fragment, PatchKind, PatchProp, PatchSet, PoseGroup};
 use crate::container::{Reader, Writer, write_whole};
 use crate::motion::{FPS, JOINT_COUNT, Motion, MotionPath, Plant, Skeleton, canonical};
 use crate::{Error, Result};
 
 const MAGIC: &[u8; 8] = b"CQPATCH\0";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Header {
@@ -29,6 +33,8 @@ struct KindHeader {
     mirrored: bool,
     core: Option<(u32, u32)>,
     contacts: Vec<Contact>,
+    #[serde(default)]
+    props: Vec<PatchProp>,
     fragments: Vec<FragmentHeader>,
 }
 
@@ -96,7 +102,7 @@ impl PatchSet {
     /// # Errors
     /// Names the place: magic, version, header field, kind, array.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let reader = Reader::open(bytes, MAGIC, VERSION)?;
+        let reader = Reader::open(bytes, MAGIC, 1..=VERSION)?;
         Self::read_from(&reader, reader.header()?, "")
     }
 
@@ -125,6 +131,7 @@ impl PatchSet {
                 labels: kind.labels,
                 contacts: kind.contacts,
                 core: kind.core,
+                props: kind.props,
                 mirrored: kind.mirrored,
             });
         }
@@ -153,7 +160,8 @@ impl PatchSet {
     }
 
     /// All problems of the set: kinds without people, fragments shorter than two frames, contacts out of range,
-    /// pose groups that do not exist.
+    /// pose groups that do not exist, props held by nobody or out of turn, ports of one pose group that hold different
+    /// things.
     pub fn validate(&self) -> Vec<Error> {
         let mut problems = Vec::new();
         for kind in &self.kinds {
@@ -190,6 +198,8 @@ impl PatchSet {
                 }
             }
         }
+        let of_kind = |(name, problem)| Error::invalid("patch set", format!("kind {name}"), problem);
+        problems.extend(self.prop_problems().into_iter().map(of_kind));
         problems
     }
 }
@@ -208,6 +218,7 @@ fn kind_header(kind: &PatchKind) -> KindHeader {
         mirrored: kind.mirrored,
         core: kind.core,
         contacts: kind.contacts.clone(),
+        props: kind.props.clone(),
         fragments: fragments.collect(),
     }
 }

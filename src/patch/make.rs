@@ -1,5 +1,5 @@
 //! From captures to a patch set: takes are collected, their people imported and retargeted, those that nobody annotated
-//! annotate themselves, and all are cut.
+//! annotate themselves, all are cut, and patches composed by hand are made of them.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use super::annotate::{AnnotateOptions, Annotation, annotate};
 use super::connectivity::connectivity;
 use super::cut::{CutOptions, Source, cut, load_take};
 use super::mirror::MIRRORED;
-use super::{Fragment, PatchKind, PatchSet};
+use super::{Fragment, PatchKind, PatchSet, compose};
 use crate::motion::Motion;
 use crate::motion::collection::{Collected, collect};
 use crate::{Error, Result};
@@ -23,6 +23,8 @@ pub struct MakeOptions {
     pub cut: CutOptions,
     /// How takes without patches are annotated.
     pub annotate: AnnotateOptions,
+    /// Compose files (`*.compose.toml`), or folders of them, besides those in the collection's own folder.
+    pub compose: Vec<PathBuf>,
 }
 
 /// A set, and how it came about.
@@ -54,7 +56,7 @@ pub enum Step {
 /// The patch set of a folder, an index, a take file or a capture (see [`collect`]).
 ///
 /// # Errors
-/// As [`collect`], [`load_take`] and [`cut`].
+/// As [`collect`], [`load_take`], [`cut`] and [`compose::add`].
 pub fn make(path: &Path, options: &MakeOptions) -> Result<Made> {
     make_with(path, options, &|_| true)
 }
@@ -92,6 +94,9 @@ pub fn make_with(path: &Path, options: &MakeOptions, report: &(dyn Fn(Step) -> b
         .map(|(c, motions)| Source { origin: c.origin.clone(), take: c.take.clone(), motions })
         .collect();
     let mut set = cut(&sources, &options.cut)?;
+    let own = path.is_dir().then(|| path.to_owned());
+    let compositions: Vec<PathBuf> = own.into_iter().chain(options.compose.iter().cloned()).collect();
+    compose::add(&mut set, &compositions, &sources, &options.cut)?;
     let found: BTreeSet<&str> = bare.iter().flat_map(|&i| &takes[i].take.patches).map(|p| p.name.as_str()).collect();
     let left_out = close(&mut set, |kind| found.contains(kind.name.trim_end_matches(MIRRORED)));
     Ok(Made { set, takes, annotation, found_in: bare, left_out })

@@ -1,6 +1,6 @@
 //! Mirrored copies of patch kinds.
 
-use super::{Contact, PatchKind, PatchSet, PoseGroup, Touch};
+use super::{Contact, PatchKind, PatchProp, PatchSet, PoseGroup, Touch, prop};
 use crate::motion::mirror;
 
 /// The label of kinds that are their own mirror image, of which no copy is made.
@@ -22,19 +22,26 @@ pub fn mirrored(kind: &PatchKind, groups: &mut Vec<PoseGroup>) -> PatchKind {
             begin: f.begin,
         }
     });
+    let seen = |p: &PatchProp| PatchProp {
+        before: p.before.map(prop::mirrored),
+        after: p.after.map(prop::mirrored),
+        ..p.clone()
+    };
     PatchKind {
         name: format!("{}{MIRRORED}", kind.name),
         fragments: fragments.collect(),
         labels: kind.labels.clone(),
         contacts: kind.contacts.iter().map(|c| Contact { a: touch(c.a), b: touch(c.b), ..*c }).collect(),
         core: kind.core,
+        props: kind.props.iter().map(seen).collect(),
         mirrored: true,
     }
 }
 
-/// Adds the mirrored copy of every kind that is not labelled `symmetric`, after the kinds themselves.
-pub(super) fn add_mirrored(set: &mut PatchSet) {
-    let originals = set.kinds.iter().filter(|k| !k.labels.iter().any(|l| l == SYMMETRIC));
+/// Adds the mirrored copy of every kind from number `first` on that is not labelled `symmetric`, after the kinds
+/// themselves.
+pub(super) fn add_mirrored(set: &mut PatchSet, first: usize) {
+    let originals = set.kinds[first..].iter().filter(|k| !k.labels.iter().any(|l| l == SYMMETRIC));
     let copies: Vec<PatchKind> = originals.map(|kind| mirrored(kind, &mut set.groups)).collect();
     set.kinds.extend(copies);
 }

@@ -3,14 +3,17 @@
 pub mod annotate;
 pub mod boundaries;
 pub mod boundary;
+pub mod compose;
 pub mod connectivity;
 mod cut;
+mod cut_props;
 #[cfg(test)]
 mod cut_tests;
 pub mod episode;
 mod file;
 mod make;
 mod mirror;
+mod prop;
 pub mod propose;
 mod set;
 mod speed;
@@ -21,4 +24,5 @@ pub(crate) use speed::{fastest_turns, turn_between};
 pub use cut::{CutOptions, Source, cut, load_take};
 pub use make::{Made, MakeOptions, Step, cut_folder, make, make_with};
 pub use mirror::mirrored;
+pub use prop::{PatchProp, PropHold};
 pub use set::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};

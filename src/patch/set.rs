@@ -1,5 +1,6 @@
 //! The patch set: the patch kinds to tile with.
 
+use super::PatchProp;
 use crate::motion::{BodyPart, Motion};
 
 /// A group of full-body poses close enough to pass from one to another smoothly (paper section 4.2).
@@ -45,7 +46,7 @@ pub struct Contact {
 }
 
 /// A motion patch that instances are made of.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PatchKind {
     /// Unique name.
     pub name: String,
@@ -57,6 +58,8 @@ pub struct PatchKind {
     pub contacts: Vec<Contact>,
     /// First and last frame of the interaction on the patch's clock, over which relative placement must not change.
     pub core: Option<(u32, u32)>,
+    /// Boxes that somebody holds.
+    pub props: Vec<PatchProp>,
     /// Made from another kind by mirroring.
     pub mirrored: bool,
 }

@@ -10,8 +10,8 @@ use glam::{Quat, Vec3};
 
 use super::{Body, Segment};
 use crate::geom::Ground;
-use crate::motion::JOINT_COUNT;
 use crate::motion::limits::{excess, hold_back};
+use crate::motion::{JOINT_COUNT, fade};
 
 /// Frames over which a difference is faded on either side of a stitch, and where one side takes all of it.
 const BLEND_FRAMES: i32 = 10;
@@ -131,44 +131,24 @@ impl Stitch {
 
     /// Weights of difference and rate at a frame before the stitch.
     fn before(&self, frame: i32) -> (f32, f32) {
-        let (w, share) = (self.window_before as f32, self.share_before);
-        let s = 1.0 + (frame - self.frame) as f32 / w;
-        if s <= 0.0 { (0.0, 0.0) } else { (share * s * s * (3.0 - 2.0 * s), share * w * s * s * (s - 1.0)) }
+        fade::before(self.share_before, self.window_before as f32, (self.frame - frame) as f32)
     }
 
     /// Weights of difference and rate at a frame after the stitch.
     fn after(&self, frame: i32) -> (f32, f32) {
-        let (w, share) = (self.window_after as f32, 1.0 - self.share_before);
-        let s = (frame - self.frame) as f32 / w;
-        if s >= 1.0 {
-            return (0.0, 0.0);
-        }
-        let left = 1.0 - s;
-        (-share * left * left * (1.0 + 2.0 * s), -share * w * s * left * left)
+        fade::after(1.0 - self.share_before, self.window_after as f32, (frame - self.frame) as f32)
     }
 }
 
 fn difference(from: &Pose, to: &Pose) -> Offset {
     std::array::from_fn(|i| match i {
         JOINT_COUNT => to.root - from.root,
-        _ => (to.rotations[i] * from.rotations[i].inverse()).to_shortest_scaled_axis(),
+        _ => fade::turn_from(from.rotations[i], to.rotations[i]),
     })
 }
 
 fn rate(from: &Pose, to: &Pose, per_frame: f32) -> Offset {
     difference(from, to).map(|d| d * per_frame)
-}
-
-trait ShortestAxis {
-    fn to_shortest_scaled_axis(self) -> Vec3;
-}
-
-impl ShortestAxis for Quat {
-    /// The rotation vector of at most half a turn.
-    fn to_shortest_scaled_axis(self) -> Vec3 {
-        let q = if self.w < 0.0 { -self } else { self };
-        q.to_scaled_axis()
-    }
 }
 
 #[cfg(test)]

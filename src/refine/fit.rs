@@ -28,7 +28,7 @@ const MAX_MISS: f32 = 0.004;
 /// A joint that is further beyond its limits than the canonical body's by more than this is told, radians.
 const MAX_EXCESS: f32 = 3.5 / 180.0 * std::f32::consts::PI;
 
-/// A hand that touches somebody, in frames of the body's motion.
+/// A hand that touches somebody or holds a box, in frames of the body's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
     hand: JointId,
@@ -44,7 +44,8 @@ impl Hold {
     }
 }
 
-/// When whose hands touch others over a chain of segments; `begin` is the first frame of the body's motion.
+/// When which hands touch others or hold a box over a chain of segments; `begin` is the first frame of the body's
+/// motion.
 pub fn holds(segments: &[Segment], begin: u32) -> Vec<Hold> {
     let mut holds = Vec::new();
     for segment in segments {
@@ -60,6 +61,10 @@ pub fn holds(segments: &[Segment], begin: u32) -> Vec<Hold> {
                 };
                 holds.push(Hold { hand, begin: frame(contact.begin) - 1.0, end: frame(contact.end) + 1.0 });
             }
+        }
+        for hold in segment.kind.props.iter().flat_map(|p| &p.holds).filter(|h| h.role == role) {
+            let (begin, end) = (frame(hold.begin) - 1.0, frame(hold.end) + 1.0);
+            holds.extend([LEFT_HAND, RIGHT_HAND].map(|hand| Hold { hand, begin, end }));
         }
     }
     holds

@@ -1,10 +1,13 @@
 //! From stitched fragments to a person's final full-body motion: bodies are carried along the deformed paths, blended
-//! where fragments meet, and their feet locked to the ground. A pass over whole tracks, not over patches.
+//! where fragments meet, their feet locked to the ground, their hands put onto whom they touch and what they carry. A
+//! pass over whole tracks, not over patches.
 
+mod arm;
 mod carry;
 mod feet;
 mod fit;
 mod leg;
+mod prop;
 mod touch;
 
 use glam::{Quat, Vec3};
@@ -12,7 +15,7 @@ use rayon::prelude::*;
 
 use crate::motion::{JOINT_COUNT, Motion, canonical};
 use crate::patch::{PatchKind, filed_rotation};
-use crate::stage::{Character, Crowd, FragmentUse};
+use crate::stage::{Character, Crowd, FragmentUse, Prop};
 
 pub use fit::{Hold, fit, holds};
 
@@ -74,21 +77,37 @@ impl Body {
     }
 }
 
+/// People's final motions, and the boxes that they carry.
+#[derive(Clone, Debug, Default)]
+pub struct Performance {
+    /// Everybody's motion.
+    pub bodies: Vec<Body>,
+    /// The boxes.
+    pub props: Vec<Prop>,
+}
+
 /// The final motion of a person over the frames 0..=last_frame of the crowd at which the person is there.
 ///
 /// `segments` are in order of time and each begins where the one before ends. O(frames x joints).
 pub fn refine(segments: &[Segment], last_frame: u32) -> Body {
+    let mut body = walk(segments, last_frame);
+    prop::lead(&[segments.to_vec()], std::slice::from_mut(&mut body), last_frame);
+    body
+}
+
+fn walk(segments: &[Segment], last_frame: u32) -> Body {
     let mut body = carry::carry(segments, last_frame);
     feet::lock(segments, &mut body);
     body
 }
 
-/// The final motions of people who act together: each [`refine`]d, then brought to touch again whom they touched.
-/// In parallel over people.
-pub fn refine_all(people: &[Vec<Segment>], last_frame: u32) -> Vec<Body> {
-    let mut bodies: Vec<Body> = people.par_iter().map(|segments| refine(segments, last_frame)).collect();
+/// The final motions of people who act together: each as [`refine`]d alone, but brought to touch again whom they touched,
+/// and boxes go from hand to hand. In parallel over people.
+pub fn refine_all(people: &[Vec<Segment>], last_frame: u32) -> Performance {
+    let mut bodies: Vec<Body> = people.par_iter().map(|segments| walk(segments, last_frame)).collect();
     touch::restore(people, &mut bodies);
-    bodies
+    let props = prop::lead(people, &mut bodies, last_frame);
+    Performance { bodies, props }
 }
 
 fn smoothstep(x: f32) -> f32 {
@@ -100,14 +119,14 @@ fn smoothstep(x: f32) -> f32 {
 /// crowd as it was baked comes out as it is. O(people x frames), in parallel over people.
 pub fn refine_crowd(crowd: &Crowd) -> Crowd {
     let people: Vec<Vec<Segment>> = crowd.characters.iter().map(|c| segments_of(crowd, c)).collect();
-    let bodies = refine_all(&people, crowd.domain.last_frame);
+    let Performance { bodies, props } = refine_all(&people, crowd.domain.last_frame);
     let dress = |((body, segments), c): ((Body, &Vec<Segment>), &Character)| {
         let body = fit(&body, &holds(segments, body.begin), &c.build);
         let rotations = body.rotations.into_iter().map(filed_rotation).collect();
         Character { begin: body.begin, root: body.root, rotations, ..c.clone() }
     };
     let characters = bodies.into_par_iter().zip(&people).zip(&crowd.characters).map(dress).collect();
-    Crowd { characters, ..crowd.clone() }
+    Crowd { characters, props, ..crowd.clone() }
 }
 
 fn segments_of<'a>(crowd: &'a Crowd, character: &'a Character) -> Vec<Segment<'a>> {

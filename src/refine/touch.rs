@@ -6,13 +6,12 @@ use std::collections::BTreeMap;
 
 use glam::{Quat, Vec3};
 
+use super::arm::{fade, move_hand};
 use super::carry::ground_at;
 use super::{Body, Segment};
+use crate::motion::BodyPart;
 use crate::motion::contacts::palm;
-use crate::motion::ik::two_bone;
 use crate::motion::joint::{HEAD, LEFT_HAND, RIGHT_HAND, SPINE2};
-use crate::motion::limits::{excess, hold_back};
-use crate::motion::{BodyPart, JOINT_COUNT};
 use crate::patch::{Contact, Touch};
 
 /// Frames over which a hand begins and ceases to be led.
@@ -64,8 +63,7 @@ fn join(a: Player, b: Player, contact: &Contact, bodies: &mut [Body]) {
         let (from, to) = presence(body);
         for frame in (first - FADE_FRAMES).max(from)..=(last + FADE_FRAMES).min(to) {
             let gap = gaps[(frame.clamp(first, last) - first) as usize];
-            let away = (first - frame).max(frame - last).max(0) as f32 / (FADE_FRAMES + 1) as f32;
-            let weight = 1.0 - away * away * (3.0 - 2.0 * away);
+            let weight = fade((first - frame).max(frame - last), FADE_FRAMES);
             move_hand(body, (frame - from) as usize, hand, (gap * weight * leads[k]).clamp_length_max(MAX_SHIFT));
         }
     }
@@ -144,27 +142,10 @@ fn place_of(part: BodyPart, globals: &[(Vec3, Quat)]) -> Vec3 {
     }
 }
 
-/// Moves a hand that keeps its orientation, arm and fore-arm following as far as their joints turn.
-fn move_hand(body: &mut Body, index: usize, hand: usize, shift: Vec3) {
-    let mut globals = Vec::new();
-    body.globals(index, &mut globals);
-    let (shoulder, arm, elbow) = (hand - 3, hand - 2, hand - 1);
-    // Elbows point back where an arm is nearly straight.
-    let pole = globals[arm].1 * Vec3::NEG_Z;
-    let target = globals[hand].0 + shift;
-    let (swing, bend, _) = two_bone(globals[arm].0, globals[elbow].0, globals[hand].0, target, pole, 0.999);
-    let (upper, fore) = (swing * globals[arm].1, swing * bend * globals[elbow].1);
-    let pose = &mut body.rotations[index * JOINT_COUNT..(index + 1) * JOINT_COUNT];
-    let mut turn =
-        |joint: usize, to: Quat| pose[joint] = hold_back(joint, to.normalize(), || excess(joint, pose[joint]));
-    turn(arm, globals[shoulder].1.inverse() * upper);
-    turn(elbow, upper.inverse() * fore);
-    turn(hand, fore.inverse() * globals[hand].1);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::motion::JOINT_COUNT;
     use crate::motion::joint::{LEFT_ARM, RIGHT_ARM, RIGHT_FORE_ARM};
     use crate::motion::{Motion, MotionPath, canonical};
     use crate::patch::{Fragment, PatchKind};
@@ -195,8 +176,7 @@ mod tests {
             labels: vec![],
             fragments: vec![fragment(stander(0.0, 0.0)), fragment(stander(0.9, std::f32::consts::PI))],
             contacts: vec![Contact { a: hand(0), b: hand(1), begin: 20, end: 40 }],
-            core: None,
-            mirrored: false,
+            ..PatchKind::default()
         };
         let placed = [0, 1].map(|role| FragmentUse {
             instance: 3,

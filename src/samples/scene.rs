@@ -14,6 +14,9 @@ use crate::motion::take::{
 
 /// Size of the box that is carried: width between the hands, height, depth (m).
 pub(super) const BOX: [f32; 3] = [0.36, 0.26, 0.30];
+/// Where its middle is, seen from the middle between the palms: up and ahead (m). Palms are on the near half, so that
+/// two people have room for their hands.
+pub(super) const GRIP: [f32; 2] = [-0.03, 0.05];
 
 /// A take in the making. Frames are at 30 per second.
 pub(super) struct Scene {
@@ -21,13 +24,12 @@ pub(super) struct Scene {
     pub actors: Vec<Actor>,
     contacts: Vec<TakeContact>,
     patches: Vec<TakePatch>,
-    /// Who takes over the box, in order, each with the second of it (none for the first).
-    box_holders: Vec<(usize, Option<f32>)>,
+    box_holds: Vec<TakeHold>,
 }
 
 impl Scene {
     pub fn new(name: &str, actors: Vec<Actor>) -> Self {
-        Self { name: name.to_owned(), actors, contacts: Vec::new(), patches: Vec::new(), box_holders: Vec::new() }
+        Self { name: name.to_owned(), actors, contacts: Vec::new(), patches: Vec::new(), box_holds: Vec::new() }
     }
 
     /// A patch of people (actor, first frame, last frame); `core` is the time of interaction in seconds.
@@ -46,22 +48,16 @@ impl Scene {
         self.contacts.push(TakeContact { a: touch(a), b: touch(b), begin, end });
     }
 
-    /// There is a box, held by these people in order; each but the first with the second of taking it over.
-    pub fn hold_box(&mut self, holders: Vec<(usize, Option<f32>)>) {
-        self.box_holders = holders;
+    /// A person holds the box over a time in seconds; by default from the beginning, or to the end.
+    pub fn hold_box(&mut self, person: usize, begin: Option<f32>, end: Option<f32>) {
+        let (begin, end) = (begin.unwrap_or(0.0), end.unwrap_or(f32::INFINITY));
+        self.box_holds.push(TakeHold { person, begin, end });
     }
 
     /// The box as a prop of a take that lasts `end` seconds.
     fn props(&self, end: f32) -> Vec<TakeProp> {
-        let begin = |i: usize| self.box_holders[i].1.unwrap_or(0.0);
-        let last = self.box_holders.len();
-        let held = (0..last).map(|i| TakeHold {
-            person: self.box_holders[i].0,
-            begin: begin(i),
-            end: if i + 1 < last { begin(i + 1) } else { end },
-        });
-        let held: Vec<_> = held.collect();
-        if held.is_empty() { vec![] } else { vec![TakeProp { name: "box".into(), size: BOX, held }] }
+        let held: Vec<_> = self.box_holds.iter().map(|h| TakeHold { end: h.end.min(end), ..h.clone() }).collect();
+        if held.is_empty() { vec![] } else { vec![TakeProp { name: "box".into(), size: BOX, grip: GRIP, held }] }
     }
 
     /// Plays the scene.

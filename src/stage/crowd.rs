@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec2, Vec3};
 
+use super::Prop;
 use crate::geom::Polygon;
 use crate::motion::{Build, FPS, JOINT_COUNT, Skeleton};
 use crate::patch::PatchSet;
@@ -119,6 +120,8 @@ pub struct Crowd {
     pub instances: Vec<Instance>,
     /// The people.
     pub characters: Vec<Character>,
+    /// The boxes that they carry.
+    pub props: Vec<Prop>,
 }
 
 impl Crowd {

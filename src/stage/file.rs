@@ -5,25 +5,31 @@
 //! z per joint, which stand in for the skeleton's; `flesh`: how a body's surface around each joint differs from the
 //! canonical body's: scale x, y, z about the joint in the rest pose, shift forward) and `characters`: each has `begin`
 //! (first frame), `frames`, `build` (index), and `fragments` (instance, role, begin, end, `samples` = number of path
-//! samples). Files without builds are of people with the canonical one.
+//! samples). Files without builds are of people with the canonical one. `props` are boxes: name, `size` (width between
+//! the hands, height, depth), `begin` (first frame), `frames`, and `holds` (character, begin, end: frames over which
+//! somebody has it in the hands; otherwise it rests).
 //!
 //! Arrays, all characters one after the other: `root` f32 x,y,z per frame; `rotations` i16 x,y,z,w per frame and joint
 //! (value / 32767; hips global, others local); `path_points` f32 x,z and `path_headings` f32 per path sample of the
-//! fragments; and the patch set's arrays with the prefix `set_`.
+//! fragments; `prop_places` f32 x,y,z of the box's middle and heading (turn about +y, radians; boxes stay level) per
+//! frame, all boxes one after the other; and the patch set's arrays with the prefix `set_`.
+//!
+//! Versions: 1 had no `props`; both are read, 2 is written.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use glam::{Quat, Vec2, Vec3};
 
-use super::{Character, Crowd, DomainInfo, FragmentUse, Instance};
+use super::{Character, Crowd, DomainInfo, FragmentUse, Holding, Instance, Prop};
 use crate::container::{Reader, Writer, write_whole};
+use crate::geom::Upright;
 use crate::motion::{Build, BuildRows, FPS, JOINT_COUNT, Skeleton, canonical};
 use crate::patch::{PatchSet, pack_rotation, unpack_rotation};
 use crate::{Error, Result};
 
 const MAGIC: &[u8; 8] = b"CQCROWD\0";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Header {
@@ -35,7 +41,18 @@ struct Header {
     #[serde(default)]
     builds: Vec<BuildRows>,
     characters: Vec<CharacterHeader>,
+    #[serde(default)]
+    props: Vec<PropHeader>,
     set: serde_json::Value,
+}
+
+#[derive(serde::Serialize, serde::Deserialize)]
+struct PropHeader {
+    name: String,
+    size: [f32; 3],
+    begin: u32,
+    frames: u32,
+    holds: Vec<Holding>,
 }
 
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -70,6 +87,9 @@ impl Crowd {
         writer.array("rotations", &rotations);
         writer.array("path_points", &points);
         writer.array("path_headings", &headings);
+        let places = self.props.iter().flat_map(|p| &p.places);
+        let places = places.flat_map(|p| [p.middle.x, p.middle.y, p.middle.z, p.heading]);
+        writer.array("prop_places", &places.collect::<Vec<f32>>());
         let set = serde_json::to_value(self.set.write_into(&mut writer, "set_")).expect("plain data");
         let (builds, own) = self.builds();
         let header = Header {
@@ -80,6 +100,7 @@ impl Crowd {
             instances: self.instances.clone(),
             builds: builds.iter().map(|b| b.to_rows()).collect(),
             characters: people().zip(own).map(|(c, build)| character_header(c, build as u32)).collect(),
+            props: self.props.iter().map(prop_header).collect(),
             set,
         };
         writer.finish(MAGIC, VERSION, &header)
@@ -90,7 +111,7 @@ impl Crowd {
     /// # Errors
     /// Names the place: magic, version, header field, character, array.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let reader = Reader::open(bytes, MAGIC, VERSION)?;
+        let reader = Reader::open(bytes, MAGIC, 1..=VERSION)?;
         let header: Header = reader.header()?;
         let set = PatchSet::read_embedded(&reader, header.set, "set_")?;
         let mut arrays = Arrays {
@@ -104,7 +125,9 @@ impl Crowd {
         };
         let read = |(i, c)| arrays.character(i, c);
         let characters = header.characters.into_iter().enumerate().map(read).collect::<Result<Vec<_>>>()?;
-        let crowd = Self { seed: header.seed, domain: header.domain, set, instances: header.instances, characters };
+        let props = props(header.props, &reader)?;
+        let crowd =
+            Self { seed: header.seed, domain: header.domain, set, instances: header.instances, characters, props };
         crowd.check_references()?;
         Ok(crowd)
     }
@@ -151,6 +174,12 @@ impl Crowd {
                 }
             }
         }
+        for (i, prop) in self.props.iter().enumerate() {
+            if let Some(hold) = prop.holds.iter().find(|h| h.character as usize >= self.characters.len()) {
+                let people = self.characters.len();
+                return bad(format!("prop {i}"), format!("expected a holder below {people}, found {}", hold.character));
+            }
+        }
         Ok(())
     }
 }
@@ -172,6 +201,32 @@ fn character_header(c: &Character, build: u32) -> CharacterHeader {
         samples: f.points.len() as u32,
     });
     CharacterHeader { begin: c.begin, frames: c.frames() as u32, build, fragments: fragments.collect() }
+}
+
+fn prop_header(prop: &Prop) -> PropHeader {
+    PropHeader {
+        name: prop.name.clone(),
+        size: prop.size,
+        begin: prop.begin,
+        frames: prop.places.len() as u32,
+        holds: prop.holds.clone(),
+    }
+}
+
+fn props(headers: Vec<PropHeader>, reader: &Reader) -> Result<Vec<Prop>> {
+    if headers.is_empty() {
+        return Ok(vec![]);
+    }
+    let numbers: Vec<f32> = reader.array("prop_places")?;
+    let mut places = numbers.chunks_exact(4).map(|v| Upright { middle: Vec3::from_slice(v), heading: v[3] });
+    let mut read = |(i, h): (usize, PropHeader)| {
+        if h.frames as usize > places.len() {
+            return Err(Error::invalid("crowd", format!("prop {i}"), "its frames reach beyond the arrays"));
+        }
+        let places = places.by_ref().take(h.frames as usize).collect();
+        Ok(Prop { name: h.name, size: h.size, begin: h.begin, places, holds: h.holds })
+    };
+    headers.into_iter().enumerate().map(&mut read).collect()
 }
 
 struct Arrays {

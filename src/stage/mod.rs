@@ -2,5 +2,7 @@
 
 mod crowd;
 mod file;
+mod prop;
 
 pub use crowd::{Character, Crowd, DomainInfo, FragmentUse, Instance};
+pub use prop::{Holding, Prop};

@@ -40,7 +40,7 @@ fn play(kind: &PatchKind) -> Vec<Body> {
     let placed: Vec<FragmentUse> = (0..kind.people()).map(|role| as_captured(kind, role)).collect();
     let people: Vec<Vec<Segment>> = placed.iter().map(|placed| vec![Segment { kind, placed }]).collect();
     let last = placed.iter().map(|p| p.end).max().unwrap_or(0);
-    refine_all(&people, last as u32)
+    refine_all(&people, last as u32).bodies
 }
 
 fn as_captured(kind: &PatchKind, role: usize) -> FragmentUse {

@@ -8,7 +8,7 @@ use super::domain::Domain;
 use super::library::Library;
 use super::occupancy::{Occupancy, Piece, PieceId};
 use crate::patch::{PatchKind, filed_rotation};
-use crate::refine::Body;
+use crate::refine::{Body, Performance};
 use crate::stage::{Character, Crowd, DomainInfo, FragmentUse, Instance};
 
 /// A tiling as people: each person's pieces in order of time.
@@ -77,11 +77,12 @@ pub(super) fn segments_of<'a>(chains: Chains<'a>, person: usize) -> Vec<(&'a Pat
 }
 
 /// The finished crowd. Instances are numbered in the order in which people meet them.
-pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, bodies: Vec<Body>) -> Crowd {
+pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, played: Performance) -> Crowd {
+    let Performance { bodies, props } = played;
     let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
     let mut instances = Vec::new();
     let mut characters = Vec::with_capacity(bodies.len());
-    for (person, (build, body)) in people(chains, bodies, seed).into_iter().enumerate() {
+    for (person, (build, body)) in people(chains, bodies, &props, seed).into_iter().enumerate() {
         let mut fragments: Vec<FragmentUse> =
             segments_of(chains, person).into_iter().map(|(_, placed)| placed).collect();
         let roles: BTreeMap<u32, u32> = chains.pieces(person).map(|p| (p.instance, p.role)).collect();
@@ -102,5 +103,5 @@ pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, bodies: Vec<Body>) 
         obstacles: scene.obstacles.clone(),
         last_frame: scene.last_frame() as u32,
     };
-    Crowd { seed, domain, set: chains.library.set.clone(), instances, characters }
+    Crowd { seed, domain, set: chains.library.set.clone(), instances, characters, props }
 }

@@ -65,6 +65,10 @@ const MAX_TURN: f32 = std::f32::consts::FRAC_PI_3;
 const WALL_ROOM: f32 = 0.3;
 /// Steps sideways and back cost this much more than walking ahead: people turn to where they go.
 const ASKEW_WEIGHT: f32 = 0.2;
+/// Cost factor of taking up and putting down.
+const LIFT_WEIGHT: f32 = 0.85;
+/// Cost of a box that lies about for a second.
+const CLUTTER_WEIGHT: f32 = 0.05;
 /// Below this mean speed a patch counts as standing, m/s.
 const STANDING_SPEED: f32 = 0.25;
 
@@ -73,6 +77,8 @@ struct Node {
     cost: f32,
     parent: u32,
     role: u32,
+    /// Whether the way to here leaves boxes lying, which the rest of it must not run into.
+    boxed: bool,
     /// Placed and found free when first expanded.
     piece: Option<Piece>,
 }
@@ -131,7 +137,7 @@ impl Bridge {
         self.nodes.clear();
         self.heap.clear();
         self.seen.clear();
-        self.push(Node { at: from, cost: 0.0, parent: 0, role: u32::MAX, piece: None }, 0.0);
+        self.push(Node { at: from, cost: 0.0, parent: 0, role: u32::MAX, boxed: false, piece: None }, 0.0);
         let mut expansions = 0;
         while let Some(Entry { node, .. }) = self.heap.pop() {
             let at = self.nodes[node as usize].at;
@@ -149,7 +155,7 @@ impl Bridge {
                 return Some(self.chain(node, matches!(goal, Goal::Since(_)), vec![]));
             }
             if let Goal::Port(to) = goal
-                && let Some(last) = self.close(view, at, to, rng)
+                && let Some(last) = self.close(view, node, to, rng)
             {
                 return Some(self.chain(node, false, last));
             }
@@ -178,16 +184,30 @@ impl Bridge {
             _ => (self.nodes[n.parent as usize].at.at, self.nodes[n.parent as usize].at.tick),
         };
         let piece = Piece::rigid(view.library, view.domain, n.role, NO_INSTANCE, entry, begin);
-        if !view.occupancy.is_free(view.library, view.domain, &piece) {
+        if !view.occupancy.is_free(view.library, view.domain, &piece)
+            || (n.boxed && self.meets_own_way(view, n.parent, &piece))
+        {
             return false;
         }
         self.nodes[node as usize].piece = Some(piece);
         true
     }
 
+    /// True if a piece runs into a box on the way to a node, or its own box lies on that way.
+    fn meets_own_way(&self, view: View, node: u32, piece: &Piece) -> bool {
+        let mut at = node;
+        while let Some(other) = &self.nodes[at as usize].piece {
+            if (other.leaves_box() || piece.leaves_box()) && piece.meets(other, view.library) {
+                return true;
+            }
+            at = self.nodes[at as usize].parent;
+        }
+        false
+    }
+
     fn expand(&mut self, view: View, node: u32, goal: Goal, taste: Taste, rng: &mut ChaCha8Rng) {
         let from = self.nodes[node as usize].at;
-        let cost = self.nodes[node as usize].cost;
+        let Node { cost, boxed, .. } = self.nodes[node as usize];
         let (moves, direction) = match goal {
             Goal::Since(_) => (&view.library.backward, -1),
             _ => (&view.library.forward, 1),
@@ -198,15 +218,18 @@ impl Bridge {
             if !inside || self.seen.contains(&key(&at)) {
                 continue;
             }
-            let cost = cost + step_cost(step, taste) * rng.random_range(0.85..1.2);
+            let cost =
+                cost + step_cost(view, step, taste) * rng.random_range(0.85..1.2) + clutter(view, step, from.tick);
             if let Some(left) = cost_left(&at, goal) {
-                self.push(Node { at, cost, parent: node, role: step.role, piece: None }, cost + left);
+                let boxed = boxed || view.library.roles[step.role as usize].leaves_box();
+                self.push(Node { at, cost, parent: node, role: step.role, boxed, piece: None }, cost + left);
             }
         }
     }
 
-    /// The last one or two patches, deformed so that they lead from `from` exactly to `to`.
-    fn close(&mut self, view: View, from: Port, to: Port, rng: &mut ChaCha8Rng) -> Option<Vec<Piece>> {
+    /// The last one or two patches, deformed so that they lead from a node exactly to `to`.
+    fn close(&mut self, view: View, node: u32, to: Port, rng: &mut ChaCha8Rng) -> Option<Vec<Piece>> {
+        let from = self.nodes[node as usize].at;
         let left = to.tick - from.tick;
         if left <= 0 || left > CLOSE_WITHIN_TICKS {
             return None;
@@ -222,10 +245,11 @@ impl Bridge {
         tail.iter()
             .chain(head)
             .filter(|c| c.ticks.0 <= left && left <= c.ticks.1)
-            .find_map(|c| self.try_close(view, c, from, to))
+            .find_map(|c| self.try_close(view, c, node, to))
     }
 
-    fn try_close(&mut self, view: View, closing: &Closing, from: Port, to: Port) -> Option<Vec<Piece>> {
+    fn try_close(&mut self, view: View, closing: &Closing, node: u32, to: Port) -> Option<Vec<Piece>> {
+        let Node { at: from, boxed, .. } = self.nodes[node as usize];
         let reach = if closing.roles[1].is_some() { PAIR_REACH } else { SINGLE_REACH };
         if !ends_near(closing, from, to, reach, MAX_TURN)
             || !closing.strand.deform(from.at, to.at, &view.library.limits, &mut self.path)
@@ -233,7 +257,10 @@ impl Bridge {
             return None;
         }
         let pieces = split(view, closing, &self.path, from.tick, to.tick)?;
-        pieces.iter().all(|p| view.occupancy.is_free(view.library, view.domain, p)).then_some(pieces)
+        let free = |p: &Piece| {
+            view.occupancy.is_free(view.library, view.domain, p) && !(boxed && self.meets_own_way(view, node, p))
+        };
+        pieces.iter().all(free).then_some(pieces)
     }
 
     fn chain(&mut self, node: u32, backward: bool, last: Vec<Piece>) -> Vec<Piece> {
@@ -293,9 +320,24 @@ fn split(view: View, closing: &Closing, path: &MotionPath, begin: i32, end: i32)
     ])
 }
 
-fn step_cost(step: &Move, taste: Taste) -> f32 {
-    let factor = if step.speed < STANDING_SPEED { taste.calm } else { 1.0 + ASKEW_WEIGHT * step.askew };
+fn step_cost(view: View, step: &Move, taste: Taste) -> f32 {
+    let lifts = view.library.roles[step.role as usize].leaves_box();
+    let factor = if lifts {
+        LIFT_WEIGHT
+    } else if step.speed < STANDING_SPEED {
+        taste.calm
+    } else {
+        1.0 + ASKEW_WEIGHT * step.askew
+    };
     step.ticks as f32 / FPS * factor
+}
+
+/// Cost of the time over which a step leaves a box lying about.
+fn clutter(view: View, step: &Move, tick: i32) -> f32 {
+    let rests = &view.library.roles[step.role as usize].rests;
+    let before = if rests[0].is_some() { tick.max(0) } else { 0 };
+    let after = if rests[1].is_some() { (view.domain.horizon - tick).max(0) } else { 0 };
+    CLUTTER_WEIGHT * (before + after) as f32 / FPS
 }
 
 /// Estimated cost from `at` to the goal, in seconds; `None` if the goal is out of reach.

@@ -13,12 +13,14 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use super::bake::{Chains, segments_of};
+use super::boxes::depth_in;
 use super::domain::Domain;
 use super::library::Library;
-use crate::geom::Capsule;
+use crate::geom::{Capsule, Cuboid};
 use crate::motion::{Build, JOINT_COUNT, body_capsules};
 use crate::patch::turn_between;
 use crate::refine::{Body, Hold, Segment, fit, holds};
+use crate::stage::Prop;
 
 /// Steps from a build to the canonical bones.
 const TONES: usize = 3;
@@ -32,7 +34,7 @@ const TOLERANCE: f32 = 0.005;
 const TOGETHER: f32 = 0.003;
 
 /// Everybody's build, and their motion fitted to it. Deterministic in `seed`.
-pub(super) fn people(chains: Chains, bodies: Vec<Body>, seed: u64) -> Vec<(Arc<Build>, Body)> {
+pub(super) fn people(chains: Chains, bodies: Vec<Body>, props: &[Prop], seed: u64) -> Vec<(Arc<Build>, Body)> {
     let dealt = deal(bodies.len(), seed);
     let holds: Vec<Vec<Hold>> = (0..bodies.len()).into_par_iter().map(|p| holds_of(chains, p, &bodies[p])).collect();
     let dress = |p: usize, tone: usize| {
@@ -50,7 +52,9 @@ pub(super) fn people(chains: Chains, bodies: Vec<Body>, seed: u64) -> Vec<(Arc<B
     let mut changed = vec![true; bodies.len()];
     while changed.contains(&true) {
         let clashes = clashes(chains, &bodies, &fitted, &dealt, &changed);
+        let bumps = bumps(&bodies, props, &fitted, &dealt, &changed);
         changed = giving_way(&clashes, &fitted);
+        bumps.into_iter().for_each(|p| changed[p] |= fitted[p].0 + 1 < TONES);
         let again: Vec<(usize, (usize, Body))> =
             (0..bodies.len()).into_par_iter().filter(|&p| changed[p]).map(|p| (p, dress(p, fitted[p].0 + 1))).collect();
         again.into_iter().for_each(|(p, dressed)| fitted[p] = dressed);
@@ -144,6 +148,29 @@ fn clashes(
     all
 }
 
+/// The changed people whose fitted bodies are deeper in a box than the canonical ones; not those who hold it.
+fn bumps(bodies: &[Body], props: &[Prop], fitted: &[(usize, Body)], dealt: &[usize], changed: &[bool]) -> Vec<usize> {
+    let bumps = |p: usize| {
+        let build = &Build::catalogue()[dealt[p]][fitted[p].0];
+        props.iter().any(|prop| {
+            (prop.begin..=prop.end()).any(|frame| {
+                let Some(cuboid) = prop.at_frame(frame) else { return false };
+                let near = |s: &Shape| {
+                    let middle = cuboid.at.ground().position;
+                    middle.distance(s.center) < cuboid.radius() + s.radius && prop.holders(frame).all(|h| h != p as u32)
+                };
+                let tick = frame as i32;
+                let Some(now) = Shape::near(p, &fitted[p].1, build, tick, &cuboid).filter(near) else { return false };
+                let depth = depth_in(&cuboid, &now.capsules);
+                depth > TOLERANCE
+                    && Shape::new(p, &bodies[p], &Build::canonical(), tick)
+                        .is_none_or(|then| depth > depth_in(&cuboid, &then.capsules) + TOGETHER)
+            })
+        })
+    };
+    (0..bodies.len()).into_par_iter().filter(|&p| changed[p] && bumps(p)).collect()
+}
+
 fn clash(chains: Chains, bodies: &[Body], a: &Shape, b: &Shape, tick: i32) -> bool {
     let depth = a.depth_into(b);
     if depth <= TOLERANCE {
@@ -182,6 +209,13 @@ impl Shape {
         let reach = |c: &Capsule| ground(c.a).distance(center).max(ground(c.b).distance(center)) + c.radius;
         let radius = capsules.iter().map(reach).fold(0.0, f32::max);
         Some(Self { person, capsules, center, radius })
+    }
+
+    /// The shape, unless its hips are out of reach of a box.
+    fn near(person: usize, body: &Body, build: &Build, tick: i32, cuboid: &Cuboid) -> Option<Self> {
+        let frame = usize::try_from(tick - body.begin as i32).ok().filter(|&f| f < body.root.len())?;
+        let away = (body.root[frame] - cuboid.at.middle).with_y(0.0).length();
+        if away > REACH + cuboid.radius() { None } else { Self::new(person, body, build, tick) }
     }
 
     fn left(&self) -> f32 {

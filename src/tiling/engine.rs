@@ -14,18 +14,23 @@ use super::bridge::Taste;
 use super::domain::Domain;
 use super::enrich::enrich;
 use super::library::Library;
-use super::mend::{bodies, dissolve, faults, mend};
+use super::mend::{dissolve, faults, mend, perform};
 use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
 use super::seed::seed_person;
 use super::tracks::Tracks;
 use super::{Scene, paper};
 use crate::patch::PatchSet;
+use crate::refine::Performance;
 use crate::{Error, Result};
 
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 4000;
+/// Every so many people one is wished for who begins with a box in the hands, for so many tries.
+const LADEN_EVERY: usize = 20;
+const LADEN_PATIENCE: usize = 60;
+const LADEN_EXPANSIONS: usize = 300;
 /// Failed tries in a row after which no further patch of several people is wished for.
-const ENRICH_PATIENCE: usize = 60_000;
+const ENRICH_PATIENCE: usize = 90_000;
 /// The share is aimed at a little higher than wished for: mending may cost a patch or two.
 const ABOVE_WISH: f32 = 1.04;
 /// Largest share of the people's time in patches of several people that early rounds aim at.
@@ -152,9 +157,9 @@ fn engine(
         let share = (wish * (scene.characters as f32 / people as f32)).min(BUSIEST);
         enrich_to(&mut tracks, share, taste, &mut clock, &mut rng);
     }
-    let (bodies, left) = finish(&mut tracks, scene.interaction, taste, &mut clock, &mut rng);
+    let (played, left) = finish(&mut tracks, scene.interaction, taste, &mut clock, &mut rng);
     let status = status(tracks.chains(), scene, left);
-    let crowd = bake(tracks.chains(), scene, options.seed, bodies);
+    let crowd = bake(tracks.chains(), scene, options.seed, played);
     Outcome { crowd, status, danglings: 0, interpenetrations: left, solve_secs: clock.secs() }
 }
 
@@ -179,8 +184,12 @@ fn state(tracks: &Tracks, phase: Phase) -> Progress {
 
 fn seed(tracks: &mut Tracks, wish: usize, taste: Taste, clock: &mut Clock, rng: &mut ChaCha8Rng) {
     let mut failures = 0;
+    let boxes = tracks.library.laden.contains(&true);
     while tracks.tracks.len() < wish && failures < SEED_PATIENCE && clock.goes_on(|| state(tracks, Phase::Seed)) {
-        failures = if seed_person(tracks, taste, rng) { 0 } else { failures + 1 };
+        let laden = boxes && tracks.tracks.len() % LADEN_EVERY == 0 && failures < LADEN_PATIENCE;
+        // Fewer patches go on with a box in the hands: the search needs longer.
+        let taste = if laden { Taste { expansions: LADEN_EXPANSIONS, ..taste } } else { taste };
+        failures = if seed_person(tracks, laden, taste, rng) { 0 } else { failures + 1 };
     }
 }
 
@@ -213,15 +222,15 @@ fn enrich_to(tracks: &mut Tracks, wish: f32, taste: Taste, clock: &mut Clock, rn
     }
 }
 
-/// Mends, and where that cost more patches of several people than it may, puts new ones in and mends again; the bodies
-/// and the number of faults left.
+/// Mends, and where that cost more patches of several people than it may, puts new ones in and mends again; the
+/// performance and the number of faults left.
 fn finish(
     tracks: &mut Tracks,
     wish: f32,
     taste: Taste,
     clock: &mut Clock,
     rng: &mut ChaCha8Rng,
-) -> (Vec<crate::refine::Body>, usize) {
+) -> (Performance, usize) {
     let mut found = mend_all(tracks, taste, clock, rng);
     for _ in 0..REFILLS {
         let share = tracks.multi_person_share();
@@ -237,20 +246,15 @@ fn finish(
     found
 }
 
-/// Tests final bodies and bridges anew until none interpenetrate; the bodies and the number of faults left.
-fn mend_all(
-    tracks: &mut Tracks,
-    taste: Taste,
-    clock: &mut Clock,
-    rng: &mut ChaCha8Rng,
-) -> (Vec<crate::refine::Body>, usize) {
+/// Tests final bodies and bridges anew until none interpenetrate; the performance and the number of faults left.
+fn mend_all(tracks: &mut Tracks, taste: Taste, clock: &mut Clock, rng: &mut ChaCha8Rng) -> (Performance, usize) {
     let mut round = 0;
     loop {
-        let bodies = bodies(tracks.chains());
-        let faults = faults(tracks.chains(), &bodies);
+        let played = perform(tracks.chains());
+        let faults = faults(tracks.chains(), &played);
         round += 1;
         if faults.is_empty() || round > MEND_ROUNDS || !clock.goes_on(|| state(tracks, Phase::Mend)) {
-            return (bodies, faults.len());
+            return (played, faults.len());
         }
         let taste = Taste { expansions: MEND_EXPANSIONS, ..taste };
         for fault in faults {

@@ -30,6 +30,8 @@ const LONGEST_BRIDGE: i32 = 110;
 const MAX_BYSTANDERS: usize = 4;
 /// Ticks before and after their collision that they may use to do so.
 const BYSTANDER_TICKS: i32 = 15;
+/// As long as no way there is, metres.
+const NO_WAY: f32 = 1e3;
 /// Room that the ends of a patch must have to walls, metres.
 const WALL_ROOM: f32 = 0.4;
 
@@ -66,6 +68,9 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
     let lead = &library.roles[lead_role as usize];
     let horizon = tracks.domain.horizon;
     let (at, tick, joint) = meeting_point(tracks, lead_track, lead, ticks, rng);
+    if !fits_hands(tracks, lead_track, lead.entry_group, tick) {
+        return None;
+    }
     let world_from_patch = at.then(lead.entry.inverse());
     let clock = tick - lead.begin;
 
@@ -80,16 +85,18 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
         let part = |track, keep_before, keep_after| Part { track, role, entry, exit, keep_before, keep_after };
         let part = if role != lead_role {
             let taken = |t: TrackId| t == lead_track || parts.iter().any(|p| p.track == t);
-            let (track, from, to) = player(tracks, &entry, &exit, taken, &mut near, rng)?;
+            let heir = heir(tracks, role, exit, world_from_patch, clock);
+            let (track, from, to) = player(tracks, &entry, &heir, taken, &mut near, rng)?;
             part(track, from, to)
         } else if let Some(joint) = joint {
             // The very numbers of the joint, not ones that differ by rounding.
             entry.at = at;
-            let to = rip_to(tracks, lead_track, &entry, &exit)?;
+            let to = rip_to(tracks, lead_track, &entry, &heir(tracks, role, exit, world_from_patch, clock))?;
             Part { track: lead_track, role, entry, exit, keep_before: joint, keep_after: to }
         } else {
             let from = rip_from(tracks, lead_track, &entry)?;
-            part(lead_track, from, rip_to(tracks, lead_track, &entry, &exit)?)
+            let heir = heir(tracks, role, exit, world_from_patch, clock);
+            part(lead_track, from, rip_to(tracks, lead_track, &entry, &heir)?)
         };
         parts.push(part);
     }
@@ -119,6 +126,23 @@ fn meeting_point(
     (on_the_way.then(Ground::new(aside, rng.random_range(-JITTER_TURN..JITTER_TURN))), tick, None)
 }
 
+/// From where a role's future is taken over: from its own exit, but where a box is handed on the one who comes with it
+/// leaves their future to the one who goes with it.
+fn heir(tracks: &Tracks, role: u32, exit: Port, world_from_patch: Ground, clock: i32) -> Port {
+    let library = tracks.library;
+    let laden = |group: u32| library.laden[group as usize];
+    let entry = laden(library.roles[role as usize].entry_group);
+    if entry == laden(exit.group) {
+        return exit;
+    }
+    let mut others = library.roles_of(library.roles[role as usize].kind);
+    let swaps = |&r: &u32| {
+        let other = &library.roles[r as usize];
+        laden(other.entry_group) != entry && laden(other.exit_group) == entry
+    };
+    others.find(swaps).map_or(exit, |r| ports(tracks, r, world_from_patch, clock).1)
+}
+
 fn ports(tracks: &Tracks, role: u32, world_from_patch: Ground, clock: i32) -> (Port, Port) {
     let r = &tracks.library.roles[role as usize];
     let entry = Port { at: world_from_patch.then(r.entry), tick: clock + r.begin, group: r.entry_group };
@@ -137,7 +161,8 @@ fn player(
 ) -> Option<(TrackId, usize, usize)> {
     let tick = (entry.tick - CAST_LEAD).clamp(0, tracks.domain.horizon - 1);
     tracks.occupancy.near(tick, entry.at.position, CAST_RADIUS, near);
-    let mut candidates: Vec<TrackId> = near.iter().map(|&id| tracks.owner(id)).filter(|&t| !taken(t)).collect();
+    let fits = |&t: &TrackId| !taken(t) && fits_hands(tracks, t, entry.group, tick);
+    let mut candidates: Vec<TrackId> = near.iter().map(|&id| tracks.owner(id)).filter(fits).collect();
     candidates.sort_unstable();
     while !candidates.is_empty() {
         let track = candidates.swap_remove(rng.random_range(0..candidates.len()));
@@ -147,6 +172,13 @@ fn player(
         }
     }
     None
+}
+
+/// True if a person has as much in the hands at a tick as people of a pose group have: a box or nothing.
+fn fits_hands(tracks: &Tracks, track: TrackId, group: u32, tick: i32) -> bool {
+    let library = tracks.library;
+    let piece = tracks.piece(tracks.tracks[track][tracks.index_at(track, tick.clamp(0, tracks.domain.horizon - 1))]);
+    library.laden[library.roles[piece.role as usize].entry_group as usize] == library.laden[group as usize]
 }
 
 /// First piece to rip up so that the person can walk to `entry`: where that is easiest; 0 if the person begins there.
@@ -271,12 +303,17 @@ fn step_aside(tracks: &mut Tracks, parts: &[Part], pieces: &[Piece], undo: &mut 
     Some(windows)
 }
 
-/// Whose future each part takes over: the pairing with the least way to go (parts are few).
+/// Whose future each part takes over: the pairing with the least way to go (parts are few). Nobody lives on with a box
+/// who has none.
 fn futures(tracks: &Tracks, parts: &[Part]) -> Vec<usize> {
     let way = |i: usize, j: usize| {
         let to = tracks.port(parts[j].track, parts[j].keep_after);
         let left = (to.tick - parts[i].exit.tick) as f32 / FPS;
         let open = parts[j].keep_after == tracks.tracks[parts[j].track].len();
+        let laden = |group: u32| tracks.library.laden[group as usize];
+        if !open && laden(to.group) != laden(parts[i].exit.group) {
+            return NO_WAY;
+        }
         if open { 0.0 } else { (parts[i].exit.at.position.distance(to.at.position) - 0.8 * left).abs() }
     };
     let mut order: Vec<usize> = (0..parts.len()).collect();

@@ -1,10 +1,11 @@
-//! Footprints: a few ground discs per frame that cover a body's capsules, arms included. Bodies whose footprints are
-//! apart are apart; the planner tests these and leaves the exact capsules to the end.
+//! Footprints: a few ground discs per frame that cover a body's capsules, arms included, and the box in its hands.
+//! Bodies whose footprints are apart are apart; the planner tests these and leaves the exact shapes to the end.
 
 use glam::{Quat, Vec2, Vec3};
 
-use crate::geom::{Capsule, Ground};
-use crate::motion::{Motion, body_capsules};
+use crate::geom::{Capsule, Cuboid, Ground};
+use crate::motion::body_capsules;
+use crate::patch::{PatchKind, PatchProp};
 
 /// Discs per body.
 pub(super) const DISCS: usize = 6;
@@ -14,8 +15,11 @@ const SPACING: f32 = 0.05;
 /// The discs of one body at one frame, relative to its path frame: x, z, radius.
 pub(super) type Footprint = [Vec3; DISCS];
 
-/// Footprints of all frames of `motion`, each grown by `margin` metres.
-pub(super) fn footprints(motion: &Motion, margin: f32) -> Vec<Footprint> {
+/// Footprints of all frames of a role, each grown by `margin` metres. A box that lies there covers ground from the
+/// first frame of who takes it up, and to the last of who puts it down.
+pub(super) fn footprints(kind: &PatchKind, role: u32, margin: f32) -> Vec<Footprint> {
+    let fragment = &kind.fragments[role as usize];
+    let motion = &fragment.motion;
     let mut globals: Vec<(Vec3, Quat)> = Vec::new();
     let mut capsules = Vec::new();
     let mut atoms = Vec::new();
@@ -27,12 +31,37 @@ pub(super) fn footprints(motion: &Motion, margin: f32) -> Vec<Footprint> {
             body_capsules(&globals, &mut capsules);
             atoms.clear();
             capsules.iter().for_each(|c| scatter(c, &mut atoms));
+            let clock = fragment.begin + frame as u32;
+            for prop in kind.props.iter().filter(|p| is_minded(p, role, clock)) {
+                let place = prop.place(kind, clock).expect("minded");
+                let from_path = place.carried(motion.path.at(frame).inverse());
+                strew(&Cuboid::new(from_path, prop.size), &mut atoms);
+            }
             if frame == 0 {
                 centers = spread(&atoms);
             }
             cover(&atoms, &mut centers, margin)
         })
         .collect()
+}
+
+/// True if a box counts as part of a role's body at a frame of the clock.
+fn is_minded(prop: &PatchProp, role: u32, clock: u32) -> bool {
+    let (Some(first), Some(last)) = (prop.holds.first(), prop.holds.last()) else { return false };
+    prop.holds.iter().any(|h| h.role == role && h.begin <= clock && clock <= h.end)
+        || first.role == role && clock < first.begin
+        || last.role == role && clock > last.end
+}
+
+/// The discs of a box that lies there, relative to its place: a row of circles across and one along.
+pub(super) fn lying(size: [f32; 3], margin: f32) -> Footprint {
+    let (across, along) = (size[0].max(size[2]), size[0].min(size[2]));
+    let radius = (across / (DISCS / 2) as f32).hypot(along / 2.0) / 2.0 + margin;
+    std::array::from_fn(|k| {
+        let x = ((k % 3) as f32 - 1.0) * across / 3.0;
+        let z = ((k / 3) as f32 - 0.5) * along / 2.0;
+        if size[0] >= size[2] { Vec3::new(x, z, radius) } else { Vec3::new(z, x, radius) }
+    })
 }
 
 /// Radius around the path point within which the whole footprint lies.
@@ -47,6 +76,17 @@ fn scatter(c: &Capsule, atoms: &mut Vec<Vec3>) {
     // A disc of sqrt(r^2 + half^2) at each point covers the stadium's sides between two points.
     let radius = c.radius.hypot(half);
     atoms.extend((0..=steps).map(|i| a.lerp(b, i as f32 / steps as f32).extend(radius)));
+}
+
+/// Points around a box's ground plan, discs without radius.
+fn strew(cuboid: &Cuboid, atoms: &mut Vec<Vec3>) {
+    let plan = cuboid.plan();
+    for (i, corner) in plan.into_iter().enumerate() {
+        let next = plan[(i + 1) % plan.len()];
+        let steps = ((next - corner).length() / SPACING).ceil().max(1.0) as usize;
+        let half = (next - corner).length() / steps as f32 * 0.5;
+        atoms.extend((0..steps).map(|k| corner.lerp(next, (k as f32 + 0.5) / steps as f32).extend(half)));
+    }
 }
 
 /// Farthest-point start.
@@ -89,7 +129,8 @@ fn cover(atoms: &[Vec3], centers: &mut [Vec2; DISCS], margin: f32) -> Footprint 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::{JOINT_COUNT, MotionPath};
+    use crate::motion::{JOINT_COUNT, Motion, MotionPath};
+    use crate::patch::Fragment;
 
     #[test]
     fn discs_cover_every_capsule_of_a_body() {
@@ -99,7 +140,9 @@ mod tests {
             rotations: (0..2 * JOINT_COUNT).map(|i| Quat::from_rotation_z(0.1 * (i % 5) as f32)).collect(),
             plants: vec![],
         };
-        let discs = footprints(&motion, 0.0);
+        let fragment = Fragment { motion: motion.clone(), begin: 0, entry_group: 0, exit_group: 0 };
+        let kind = PatchKind { fragments: vec![fragment], ..PatchKind::default() };
+        let discs = footprints(&kind, 0, 0.0);
         let (mut globals, mut capsules) = (vec![], vec![]);
         motion.globals_at(1, Ground::IDENTITY, &mut globals);
         body_capsules(&globals, &mut capsules);
@@ -112,6 +155,20 @@ mod tests {
                     assert!(covered, "{p}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn discs_cover_a_box_that_lies_there() {
+        for size in [[0.36, 0.26, 0.30], [0.2, 0.2, 0.5], [0.3, 0.1, 0.3]] {
+            let discs = lying(size, 0.0);
+            for i in 0..=40 {
+                for k in 0..=40 {
+                    let p = Vec2::new(size[0] * (i as f32 / 40.0 - 0.5), size[2] * (k as f32 / 40.0 - 0.5));
+                    assert!(discs.iter().any(|d| d.truncate().distance(p) <= d.z + 1e-4), "{size:?}: {p}");
+                }
+            }
+            assert!(reach(&discs) < 0.5 * size[0].hypot(size[2]) + 0.08);
         }
     }
 }

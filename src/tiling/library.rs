@@ -4,11 +4,11 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use super::audition::plays_cleanly;
-use super::footprint::{Footprint, footprints, reach};
+use super::footprint::{Footprint, footprints, lying, reach};
 use crate::deform::{Limits, Strand};
-use crate::geom::Ground;
+use crate::geom::{Ground, Upright};
 use crate::motion::{JOINT_COUNT, Motion, MotionPath};
-use crate::patch::{PatchSet, fastest_turns, turn_between};
+use crate::patch::{PatchKind, PatchProp, PatchSet, fastest_turns, turn_between};
 
 /// Growth of footprints: what blending, foot locking and sampling between frames may move a body, metres.
 const MARGIN: f32 = 0.02;
@@ -47,6 +47,31 @@ pub(super) struct Role {
     pub footprints: Vec<Footprint>,
     /// Radius of each footprint around the path point.
     pub reach: Vec<f32>,
+    /// The box that lies there before the role takes it up, and the one after the role put it down.
+    pub rests: [Option<Rest>; 2],
+}
+
+/// A box that lies on its place.
+pub(super) struct Rest {
+    /// Source frame at which it is taken up or put down.
+    pub frame: usize,
+    /// Its place seen from the path at that frame.
+    pub from_path: Ground,
+    /// Discs that cover it.
+    pub footprint: Footprint,
+    /// Radius of them around its middle.
+    pub reach: f32,
+}
+
+impl Role {
+    fn reaches(&self) -> impl Iterator<Item = f32> {
+        self.reach.iter().copied().chain(self.rests.iter().flatten().map(|r| r.reach))
+    }
+
+    /// True if a box lies there before or after.
+    pub fn leaves_box(&self) -> bool {
+        self.rests.iter().any(Option::is_some)
+    }
 }
 
 /// A step of the search: a single-person role taken from its entry (forward) or from its exit (backward).
@@ -102,6 +127,8 @@ pub(super) struct Library<'a> {
     pub fastest_step: f32,
     /// Largest reach of any footprint.
     pub max_reach: f32,
+    /// By pose group, whether people have a box in their hands.
+    pub laden: Vec<bool>,
 }
 
 impl<'a> Library<'a> {
@@ -125,7 +152,7 @@ impl<'a> Library<'a> {
             forward[role.entry_group as usize].push(step(role.exit, role.exit_group));
             backward[role.exit_group as usize].push(step(role.exit.inverse(), role.entry_group));
         }
-        let closings = closings(&roles, groups, is_single);
+        let closings = closings(&roles, groups, |r| is_single(r) && !r.leaves_box());
         Self {
             set,
             limits,
@@ -138,7 +165,8 @@ impl<'a> Library<'a> {
             closings,
             fastest,
             fastest_step: roles.iter().map(|r| longest_step(&r.path)).fold(0.0, f32::max),
-            max_reach: roles.iter().flat_map(|r| &r.reach).copied().fold(0.0, f32::max),
+            max_reach: roles.iter().flat_map(Role::reaches).fold(0.0, f32::max),
+            laden: set.laden_groups(),
             roles,
         }
     }
@@ -175,7 +203,7 @@ fn prepare(set: &PatchSet, kind: u32, role: u32, limits: &Limits, fastest: &[f32
         points: source.points.iter().map(|&p| entry_from_patch.apply(p)).collect(),
         headings: source.headings.iter().map(|h| h - entry.heading).collect(),
     };
-    let footprints = footprints(&fragment.motion, MARGIN);
+    let footprints = footprints(&set.kinds[kind as usize], role, MARGIN);
     Role {
         kind,
         role,
@@ -188,9 +216,30 @@ fn prepare(set: &PatchSet, kind: u32, role: u32, limits: &Limits, fastest: &[f32
         begin: fragment.begin as i32,
         hips_turns: hips_turns(&fragment.motion),
         reach: footprints.iter().map(reach).collect(),
+        rests: rests(&set.kinds[kind as usize], role),
         footprints,
         path,
     }
+}
+
+/// The boxes that a role is the first to take up and the last to put down.
+fn rests(kind: &PatchKind, role: u32) -> [Option<Rest>; 2] {
+    let fragment = &kind.fragments[role as usize];
+    let rest = |prop: &PatchProp, at: Upright, clock: u32| {
+        let frame = (clock - fragment.begin) as usize;
+        let footprint = lying(prop.size, MARGIN);
+        let from_path = fragment.motion.path.at(frame).inverse().then(at.ground());
+        Rest { frame, from_path, reach: reach(&footprint), footprint }
+    };
+    let before = kind.props.iter().find_map(|p| {
+        let hold = p.holds.first().filter(|h| h.role == role)?;
+        Some(rest(p, p.before?, hold.begin))
+    });
+    let after = kind.props.iter().find_map(|p| {
+        let hold = p.holds.last().filter(|h| h.role == role)?;
+        Some(rest(p, p.after?, hold.end))
+    });
+    [before, after]
 }
 
 /// The part of a path's length that leads away from where the body looks: 0 for a walk, 1 for steps sideways or back.

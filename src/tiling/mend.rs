@@ -1,5 +1,5 @@
-//! Mending: final bodies are tested with their exact capsules, and where two of them interpenetrate a window of one
-//! person's track is ripped up and bridged anew.
+//! Mending: final bodies are tested with their exact capsules, and boxes with them; where something enters something
+//! else a window of one person's track is ripped up and bridged anew.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -10,6 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use super::bake::{Chains, segments_of};
+use super::boxes::in_the_way;
 use super::bridge::Taste;
 use super::domain::Domain;
 use super::library::Library;
@@ -17,7 +18,7 @@ use super::tracks::{TrackId, Tracks, Undo, Window};
 use crate::geom::Capsule;
 use crate::motion::{JOINT_COUNT, body_capsules};
 use crate::patch::{PatchKind, turn_between};
-use crate::refine::{Body, Segment, refine, refine_all};
+use crate::refine::{Body, Performance, Segment, refine, refine_all};
 use crate::stage::FragmentUse;
 
 /// No body reaches further from its hips than this, metres.
@@ -37,7 +38,7 @@ const TRIES: i32 = 10;
 /// Ticks around a window over which its stitches may change a body.
 const BLEND_TICKS: i32 = 16;
 
-/// Something wrong with the final bodies: two people interpenetrate, or one moves as nobody can.
+/// Something wrong with the final bodies: two people or their boxes interpenetrate, or one moves as nobody can.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Fault {
     /// One person.
@@ -48,8 +49,8 @@ pub(super) struct Fault {
     pub tick: i32,
 }
 
-/// The final bodies of all people.
-pub(super) fn bodies(chains: Chains) -> Vec<Body> {
+/// The final bodies of all people, and the boxes that they carry.
+pub(super) fn perform(chains: Chains) -> Performance {
     let uses: Vec<_> = (0..chains.lists.len()).map(|t| segments_of(chains, t)).collect();
     let people: Vec<Vec<Segment>> = uses.iter().map(|uses| segments(uses)).collect();
     refine_all(&people, chains.domain.horizon as u32 - 1)
@@ -65,9 +66,10 @@ fn segments<'a>(uses: &'a [(&'a PatchKind, FragmentUse)]) -> Vec<Segment<'a>> {
 }
 
 /// All faults of the final bodies, each at its first tick.
-pub(super) fn faults(chains: Chains, bodies: &[Body]) -> Vec<Fault> {
+pub(super) fn faults(chains: Chains, played: &Performance) -> Vec<Fault> {
+    let bodies = &played.bodies;
     let per_tick: Vec<Vec<(TrackId, TrackId)>> =
-        (0..chains.domain.horizon).into_par_iter().map(|tick| touching(chains, bodies, tick)).collect();
+        (0..chains.domain.horizon).into_par_iter().map(|tick| touching(chains, played, tick)).collect();
     let mut open: BTreeSet<(TrackId, TrackId)> = BTreeSet::new();
     let mut faults = Vec::new();
     for (tick, pairs) in per_tick.into_iter().enumerate() {
@@ -112,8 +114,9 @@ fn is_rushed(body: &Body, library: &Library, frame: usize) -> bool {
         || (0..JOINT_COUNT).any(|j| turn_between(before[j], now[j]) > RUSH * library.fastest[j])
 }
 
-/// Bodies of one tick, sorted along x so that near ones are neighbours.
-fn touching(chains: Chains, bodies: &[Body], tick: i32) -> Vec<(TrackId, TrackId)> {
+/// Who is in whom or in whose box at a tick. Bodies are sorted along x so that near ones are neighbours.
+fn touching(chains: Chains, played: &Performance, tick: i32) -> Vec<(TrackId, TrackId)> {
+    let bodies = &played.bodies;
     let frame = |t: TrackId| usize::try_from(tick - bodies[t].begin as i32).ok().filter(|&f| f < bodies[t].root.len());
     let mut present: Vec<(Vec2, TrackId, usize)> = (0..bodies.len())
         .filter_map(|t| frame(t).map(|f| (Vec2::new(bodies[t].root[f].x, bodies[t].root[f].z), t, f)))
@@ -121,7 +124,7 @@ fn touching(chains: Chains, bodies: &[Body], tick: i32) -> Vec<(TrackId, TrackId
     present.sort_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.1.cmp(&b.1)));
     let mut shapes: Vec<Option<Vec<Capsule>>> = vec![None; present.len()];
     let mut globals = Vec::new();
-    let mut pairs = Vec::new();
+    let mut pairs = in_the_way(chains, played, tick);
     for i in 0..present.len() {
         for j in i + 1..present.len() {
             if present[j].0.x - present[i].0.x > TOUCHING_HIPS {

@@ -2,6 +2,7 @@
 
 mod audition;
 mod bake;
+mod boxes;
 mod bridge;
 mod builds;
 mod domain;
@@ -13,6 +14,7 @@ mod mend;
 mod occupancy;
 mod outcome;
 mod paper;
+mod piece;
 mod scene;
 mod seed;
 mod tracks;

@@ -6,10 +6,9 @@ use glam::Vec2;
 
 use super::bridge::NO_INSTANCE;
 use super::domain::Domain;
-use super::footprint::{DISCS, Footprint};
 use super::library::Library;
-use crate::geom::{Ground, Turn};
-use crate::motion::MotionPath;
+pub(super) use super::piece::{Piece, depth};
+use super::piece::{footprint, overlap, world_discs};
 
 /// Cell size of the grid in metres.
 const CELL: f32 = 1.0;
@@ -21,98 +20,6 @@ const FAR: f32 = 1024.0;
 
 /// Index of a placed piece.
 pub(super) type PieceId = u32;
-
-/// A body at one tick.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Body {
-    position: Vec2,
-    turn: Turn,
-    reach: f32,
-    frame: u32,
-}
-
-/// One role of an instance, placed: from tick `begin` to tick `end`, along `path` (world, one sample per source frame).
-#[derive(Clone, Debug)]
-pub(super) struct Piece {
-    /// Index of the role in the library.
-    pub role: u32,
-    /// Index of the instance.
-    pub instance: u32,
-    /// Tick of the entry.
-    pub begin: i32,
-    /// Tick of the exit.
-    pub end: i32,
-    /// The deformed path.
-    pub path: MotionPath,
-    /// The bodies on the ticks it occupies: [begin, end) cut to [0, horizon).
-    bodies: Vec<Body>,
-}
-
-impl Piece {
-    /// A role placed rigidly with its entry at `from`.
-    pub fn rigid(library: &Library, domain: &Domain, role: u32, instance: u32, from: Ground, begin: i32) -> Self {
-        let source = &library.roles[role as usize];
-        let path = MotionPath {
-            points: source.path.points.iter().map(|&p| from.apply(p)).collect(),
-            headings: source.path.headings.iter().map(|h| h + from.heading).collect(),
-        };
-        Self::along(library, domain, role, instance, path, begin, begin + source.ticks)
-    }
-
-    /// A role placed along a deformed path.
-    pub fn along(
-        library: &Library,
-        domain: &Domain,
-        role: u32,
-        instance: u32,
-        path: MotionPath,
-        begin: i32,
-        end: i32,
-    ) -> Self {
-        let source = &library.roles[role as usize];
-        let last = path.len() - 1;
-        let step = last as f32 / (end - begin) as f32;
-        let bodies = (begin.max(0)..end.min(domain.horizon)).map(|tick| {
-            let at = (tick - begin) as f32 * step;
-            let i = (at as usize).min(last - 1);
-            let t = at - i as f32;
-            let frame = (at + 0.5) as usize;
-            Body {
-                position: path.points[i].lerp(path.points[i + 1], t),
-                turn: Turn::from_angle(path.headings[i] * (1.0 - t) + path.headings[i + 1] * t),
-                reach: source.reach[frame],
-                frame: frame as u32,
-            }
-        });
-        let bodies = bodies.collect();
-        Self { role, instance, begin, end, path, bodies }
-    }
-
-    /// State at the entry.
-    pub fn entry(&self) -> Ground {
-        self.path.at(0)
-    }
-
-    /// State at the exit.
-    pub fn exit(&self) -> Ground {
-        self.path.at(self.path.len() - 1)
-    }
-
-    fn first_tick(&self) -> i32 {
-        self.begin.max(0)
-    }
-
-    /// Place and heading at a tick the piece occupies.
-    pub fn state(&self, tick: i32) -> Ground {
-        let body = &self.bodies[(tick - self.first_tick()) as usize];
-        Ground::new(body.position, body.turn.angle())
-    }
-
-    /// Ticks inside the domain's time.
-    pub fn ticks_inside(&self) -> usize {
-        self.bodies.len()
-    }
-}
 
 /// The bodies in one cell at one tick, with what the cheap tests need beside them.
 #[derive(Clone, Copy, Default)]
@@ -192,7 +99,7 @@ impl Occupancy {
     /// Puts the bodies of a hidden piece back.
     pub fn show(&mut self, id: PieceId) {
         let piece = self.pieces[id as usize].take().expect("a live piece");
-        for (tick, body) in (piece.first_tick()..).zip(&piece.bodies) {
+        for (tick, body) in (piece.shown_from..).zip(&piece.bodies) {
             let cell = self.cell_of(tick, body.position);
             let cell = &mut self.cells[cell];
             cell.bodies[cell.count as usize] = Shown { id, position: body.position, reach: body.reach };
@@ -204,7 +111,7 @@ impl Occupancy {
     /// Takes the bodies of a piece out, keeping the piece.
     pub fn hide(&mut self, id: PieceId) {
         let piece = self.pieces[id as usize].take().expect("a live piece");
-        for (tick, body) in (piece.first_tick()..).zip(&piece.bodies) {
+        for (tick, body) in (piece.shown_from..).zip(&piece.bodies) {
             let cell = self.cell_of(tick, body.position);
             let cell = &mut self.cells[cell];
             let at = cell.bodies[..cell.count as usize].iter().position(|b| b.id == id).expect("shown");
@@ -265,8 +172,7 @@ impl Occupancy {
     fn is_inside(&self, library: &Library, domain: &Domain, piece: &Piece, i: usize) -> bool {
         let body = &piece.bodies[i];
         domain.holds(body.position, body.reach) || {
-            let footprint = &library.roles[piece.role as usize].footprints[body.frame as usize];
-            world_discs(body, footprint).iter().all(|d| domain.holds(d.truncate(), d.z))
+            world_discs(body, footprint(library, piece.role, body)).iter().all(|d| domain.holds(d.truncate(), d.z))
         }
     }
 
@@ -280,8 +186,7 @@ impl Occupancy {
         met: &mut impl FnMut(Option<PieceId>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let body = &piece.bodies[i];
-        let tick = piece.first_tick() + i as i32;
-        let footprint = |role: u32, frame: u32| &library.roles[role as usize].footprints[frame as usize];
+        let tick = piece.shown_from + i as i32;
         let reach = body.reach + self.max_reach;
         let mut discs = None;
         let (columns, rows) = self.cells_within(body.position, reach);
@@ -300,9 +205,9 @@ impl Occupancy {
                     if other.instance == piece.instance && piece.instance != NO_INSTANCE {
                         continue;
                     }
-                    let theirs = &other.bodies[(tick - other.first_tick()) as usize];
-                    let own = discs.get_or_insert_with(|| world_discs(body, footprint(piece.role, body.frame)));
-                    if overlap(own, &world_discs(theirs, footprint(other.role, theirs.frame))) {
+                    let theirs = other.body(tick).expect("shown at this tick");
+                    let own = discs.get_or_insert_with(|| world_discs(body, footprint(library, piece.role, body)));
+                    if overlap(own, &world_discs(theirs, footprint(library, other.role, theirs))) {
                         met(Some(shown.id))?;
                     }
                 }
@@ -316,7 +221,7 @@ impl Occupancy {
         (low.0.max(0)..=high.0.min(self.columns - 1), low.1.max(0)..=high.1.min(self.rows - 1))
     }
 
-    /// Ids of the pieces whose path points lie within `distance` of `position` at `tick`, in no particular order.
+    /// Ids of the pieces whose people's path points lie within `distance` of `position` at `tick`, in no particular order.
     pub fn near(&self, tick: i32, position: Vec2, distance: f32, out: &mut Vec<PieceId>) {
         out.clear();
         let (columns, rows) = self.cells_within(position, distance);
@@ -324,43 +229,9 @@ impl Occupancy {
             for x in columns.clone() {
                 let cell = &self.cells[((tick * self.rows + z) * self.columns + x) as usize];
                 let near = |b: &&Shown| b.position.distance_squared(position) < distance * distance;
-                out.extend(cell.bodies[..cell.count as usize].iter().filter(near).map(|b| b.id));
+                let near = cell.bodies[..cell.count as usize].iter().filter(near).map(|b| b.id);
+                out.extend(near.filter(|&id| self.piece(id).is_played(tick)));
             }
         }
     }
-}
-
-/// How deep the footprints of two pieces overlap at a tick, metres; `None` if either is not there, or they are apart.
-pub(super) fn depth(library: &Library, a: &Piece, b: &Piece, tick: i32) -> Option<f32> {
-    let body = |p: &Piece| {
-        let body = p.bodies.get(usize::try_from(tick - p.first_tick()).ok()?)?;
-        Some((
-            body.position,
-            body.reach,
-            world_discs(body, &library.roles[p.role as usize].footprints[body.frame as usize]),
-        ))
-    };
-    let ((at, reach, own), (other_at, other_reach, others)) = (body(a)?, body(b)?);
-    if at.distance(other_at) >= reach + other_reach {
-        return None;
-    }
-    let pairs = own.iter().flat_map(|p| others.iter().map(move |q| p.z + q.z - p.truncate().distance(q.truncate())));
-    pairs.reduce(f32::max).filter(|&d| d > 0.0)
-}
-
-fn world_discs(body: &Body, footprint: &Footprint) -> Footprint {
-    footprint.map(|d| (body.position + body.turn.apply(d.truncate())).extend(d.z))
-}
-
-fn overlap(a: &Footprint, b: &Footprint) -> bool {
-    for p in a {
-        for q in b {
-            let apart = p.z + q.z;
-            if p.truncate().distance_squared(q.truncate()) < apart * apart {
-                return true;
-            }
-        }
-    }
-    debug_assert_eq!(a.len(), DISCS);
-    false
 }

@@ -26,10 +26,10 @@ use super::bake::{Chains, bake};
 use super::domain::Domain;
 use super::engine::{Clock, wishes};
 use super::library::Library;
-use super::mend::{bodies, faults};
+use super::mend::{faults, perform};
 use super::outcome::{Options, Outcome, Phase, Progress, Status};
 use crate::patch::PatchSet;
-use crate::refine::Body;
+use crate::refine::Performance;
 
 pub(super) use anneal::energy;
 
@@ -53,12 +53,12 @@ pub(super) fn tile(
     anneal::anneal(&mut tiling, scene.characters, &preference, &mut clock, &mut rng);
     let mut search = search::Search::new(preference);
     search.close(&mut tiling, &mut clock, &mut rng);
-    let (chains, bodies, left) = mend(&mut tiling, &mut search, &mut clock, &mut rng);
+    let (chains, played, left) = mend(&mut tiling, &mut search, &mut clock, &mut rng);
 
     let danglings = tiling.dangling();
     let chains = tiling.chains(&chains);
     let status = status(danglings, left, chains, scene);
-    let crowd = bake(chains, scene, options.seed, bodies);
+    let crowd = bake(chains, scene, options.seed, played);
     Outcome { crowd, status, danglings, interpenetrations: left, solve_secs: clock.secs() }
 }
 
@@ -68,16 +68,16 @@ fn mend(
     search: &mut search::Search,
     clock: &mut Clock,
     rng: &mut ChaCha8Rng,
-) -> (Vec<Vec<u32>>, Vec<Body>, usize) {
+) -> (Vec<Vec<u32>>, Performance, usize) {
     let mut round = 0;
     loop {
         let lists = tiling.characters();
         let chains = tiling.chains(&lists);
-        let bodies = bodies(chains);
-        let faults = faults(chains, &bodies);
+        let played = perform(chains);
+        let faults = faults(chains, &played);
         round += 1;
         if faults.is_empty() || round > MEND_ROUNDS || !clock.goes_on(|| tiling.state(Phase::Mend)) {
-            return (lists, bodies, faults.len());
+            return (lists, played, faults.len());
         }
         let mut culprits: Vec<u32> = faults.iter().map(|f| chains.smaller_instance(f.a, f.b, f.tick)).collect();
         culprits.sort_unstable();

@@ -5,16 +5,15 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::bridge::{Goal, Port, Taste};
+use super::library::{Library, Move};
 use super::tracks::{Tracks, Undo};
 use crate::geom::Ground;
 
-/// Tries to add a person at a random place of the domain, present over the whole time.
-pub(super) fn seed_person(tracks: &mut Tracks, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
+/// Tries to add a person at a random place of the domain, present over the whole time; one who begins with a box in the
+/// hands, or by taking one up, if so wished.
+pub(super) fn seed_person(tracks: &mut Tracks, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
     let domain = tracks.domain;
-    let role = {
-        let single: Vec<u32> = tracks.library.forward.iter().flatten().map(|m| m.role).collect();
-        single[rng.random_range(0..single.len())]
-    };
+    let role = first_role(tracks.library, laden, rng);
     let place = Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
     let heading = rng.random_range(-std::f32::consts::PI..std::f32::consts::PI);
     let lead = rng.random_range(0..tracks.library.roles[role as usize].ticks);
@@ -42,4 +41,20 @@ pub(super) fn seed_person(tracks: &mut Tracks, taste: Taste, rng: &mut ChaCha8Rn
     tracks.push_track(pieces);
     tracks.commit(undo);
     true
+}
+
+/// Any single-person role without a box; or with one, half of them roles that take it up, if there are such.
+fn first_role(library: &Library, laden: bool, rng: &mut ChaCha8Rng) -> u32 {
+    let lifts = |m: &Move| library.roles[m.role as usize].rests[0].is_some() && library.laden[m.group as usize];
+    let carries = |m: &Move| library.laden[library.roles[m.role as usize].entry_group as usize];
+    let roles = |wanted: &dyn Fn(&Move) -> bool| -> Vec<u32> {
+        library.forward.iter().flatten().filter(|m| wanted(m)).map(|m| m.role).collect()
+    };
+    let wanted = match laden {
+        true if rng.random_range(0..2) == 0 => roles(&lifts),
+        true => roles(&carries),
+        false => roles(&|m| !lifts(m) && !carries(m)),
+    };
+    let wanted = if wanted.is_empty() { roles(&|_| true) } else { wanted };
+    wanted[rng.random_range(0..wanted.len())]
 }

@@ -9,6 +9,8 @@ export interface FixtureOptions {
   /** Changes the JSON header before it is written: for faults. */
   alter?: (header: Record<string, unknown>) => void;
   version?: number;
+  /** Places of props, four numbers per frame. */
+  props?: Float32Array;
 }
 
 interface Plan {
@@ -81,7 +83,7 @@ export interface Fixture {
   lastFrame: number;
 }
 
-export function fixtureCrowd({ people = 12, secs = 10, alter, version = 1 }: FixtureOptions = {}): Fixture {
+export function fixtureCrowd({ people = 12, secs = 10, alter, version = 2, props }: FixtureOptions = {}): Fixture {
   const last = Math.round(secs * FPS);
   const { plans, instances, reach } = plan(people, last);
   const root: number[] = [];
@@ -190,6 +192,7 @@ export function fixtureCrowd({ people = 12, secs = 10, alter, version = 1 }: Fix
       rotations: ["i16", new Int16Array(rotations)],
       path_points: ["f32", new Float32Array(points)],
       path_headings: ["f32", new Float32Array(headings)],
+      ...(props ? { prop_places: ["f32", props] as ["f32", Float32Array] } : {}),
     },
     alter,
   );

@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { FileProblem } from "../src/crowd/container";
 import { readCrowd } from "../src/crowd/reader";
+import { sampleProp } from "../src/crowd/sample";
 import { type FixtureOptions, fixtureCrowd } from "./fixture";
 
 const small = (options: FixtureOptions = {}) => fixtureCrowd({ people: 3, secs: 2, ...options }).bytes;
@@ -75,7 +76,7 @@ describe("a broken crowd", () => {
     const bytes = small();
     new Uint8Array(bytes).set([80, 75], 0);
     expect(problem(bytes)).toMatch(/byte 0: expected the magic bytes "CQCROWD", found "PK/);
-    expect(problem(small({ version: 2 }))).toBe("byte 8: expected version 1, found 2");
+    expect(problem(small({ version: 3 }))).toBe("byte 8: expected version 1 or 2, found 3");
     expect(problem(new ArrayBuffer(0))).toMatch(/^byte 0/);
   });
 
@@ -127,5 +128,44 @@ describe("a broken crowd", () => {
     expect(broken((h: { skeleton: { joints: { parent: number }[] } }) => (h.skeleton.joints[3].parent = 8))).toMatch(
       /^joint 3/,
     );
+  });
+});
+
+describe("boxes", () => {
+  type Header = { props?: object[] };
+  const box = {
+    name: "box",
+    size: [0.4, 0.3, 0.3],
+    begin: 20,
+    frames: 3,
+    holds: [{ character: 1, begin: 20, end: 22 }],
+  };
+  const places = new Float32Array([0, 1, 0, 3, 0.2, 1, 0, -3, 0.4, 1, 0, -3]);
+  const withBox = (change: object = {}) =>
+    small({ props: places, alter: (h) => ((h as Header).props = [{ ...box, ...change }]) });
+
+  it("are read, and sampled the short way round", () => {
+    const crowd = readCrowd(withBox());
+    expect(crowd.props[0]).toEqual({ ...box, firstFrame: 0 });
+    const out = [0, 0, 0, 0];
+    expect(sampleProp(crowd, 0, 20.5 / 30, out)).toBe(true);
+    expect(out[0]).toBeCloseTo(0.1);
+    expect(out[3]).toBeCloseTo(Math.PI);
+    expect(sampleProp(crowd, 0, 19 / 30, out)).toBe(false);
+    expect(sampleProp(crowd, 0, 23 / 30, out)).toBe(false);
+    expect(sampleProp(crowd, 0, Number.NaN, out)).toBe(false);
+  });
+
+  it("are none in files of the first version", () => {
+    expect(readCrowd(small({ version: 1 })).props).toEqual([]);
+  });
+
+  it("are refused where they do not fit", () => {
+    expect(problem(withBox({ frames: 4 }))).toBe("array prop_places: expected 16 numbers for its props, found 12");
+    expect(problem(withBox({ size: [1, 2] }))).toBe("prop 0, size: expected 3 numbers, found 2");
+    expect(problem(withBox({ holds: [{ character: 9, begin: 1, end: 2 }] }))).toBe(
+      "prop 0: character 9 does not exist",
+    );
+    expect(problem(withBox({ holds: [{ character: 1, begin: 1 }] }))).toMatch(/^prop 0, hold 0, end/);
   });
 });

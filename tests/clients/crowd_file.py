@@ -21,7 +21,7 @@ def read(path: Path) -> tuple[dict[str, Any], list[Person]]:
     """The header and the people."""
     raw = path.read_bytes()
     magic, version, header_len, _ = struct.unpack_from("<8sIIQ", raw)
-    assert magic == b"CQCROWD\0" and version == 1, (magic, version)
+    assert magic == b"CQCROWD\0" and version in (1, 2), (magic, version)
     header = json.loads(raw[24 : 24 + header_len])
 
     def array(name: str, dtype: str) -> np.ndarray:

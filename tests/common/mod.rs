@@ -33,7 +33,7 @@ fn single(name: &str, groups: (u32, u32), motion: Motion) -> PatchKind {
         fragments: vec![fragment],
         contacts: vec![],
         core: None,
-        mirrored: false,
+        ..PatchKind::default()
     }
 }
 
@@ -69,7 +69,7 @@ fn meeting(name: &str, stand_frames: usize, turn: f32) -> PatchKind {
         fragments: vec![person(1.0), person(-1.0)],
         contacts: vec![],
         core: Some((30, 30 + stand_frames as u32)),
-        mirrored: false,
+        ..PatchKind::default()
     }
 }
 

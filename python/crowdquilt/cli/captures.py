@@ -107,6 +107,7 @@ def tell(found: dict[str, Any]) -> None:
         "patches out/samples -o samples.patches",
         "patches captures/index.csv -o mine.patches --takes found",
         "patches found --captures captures -o edited.patches",
+        "patches out/samples --compose examples/compose -o out/composed.patches",
     )
 )
 def patches(
@@ -123,15 +124,20 @@ def patches(
     alone: Annotated[int | None, typer.Option(help="Most patches of one person, mirrored copies not counted.")] = None,
     touch_gap: Annotated[float | None, typer.Option(help="Bodies nearer than this touch, in metres.")] = None,
     near: Annotated[float | None, typer.Option(help="People nearer than this react to each other, in metres.")] = None,
+    compose: Annotated[
+        list[Path] | None, typer.Option(help="File (.compose.toml) that composes a patch by hand, or folder of them.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Do not list takes and kinds.")] = False,
 ) -> None:
     """Make motion patches of captures, and their mirrored copies.
 
     Takes that say where to cut are cut there. In all others events between people are found (they touch, react to each
-    other, act together), and a few recurring poses at which patches begin and end.
+    other, act together), and a few recurring poses at which patches begin and end. Files that end in .compose.toml
+    compose patches by hand of clips of the takes.
     """
     options = {"threshold": threshold, "groups": groups, "alone": alone, "touch_gap": touch_gap, "near": near}
+    options |= {"compose": compose}
     try:
         made = make_set(source, captures, **{name: value for name, value in options.items() if value is not None})
     except ValueError as error:

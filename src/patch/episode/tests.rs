@@ -50,7 +50,8 @@ fn truths(file: &TakeFile) -> Vec<Truth> {
     for pair in file.props.iter().flat_map(|p| p.held.windows(2)) {
         let (a, b) = (pair[0].person, pair[1].person);
         let people = [a.min(b), a.max(b)];
-        all.push(Truth { people, begin: pair[1].begin, end: pair[1].begin, handover: true });
+        let middle = 0.5 * (pair[1].begin + pair[0].end);
+        all.push(Truth { people, begin: middle, end: middle, handover: true });
     }
     all
 }

@@ -18,6 +18,7 @@ pub(super) const ELBOW_CARRY: Vec3 = Vec3::new(0.35, -1.0, -0.7);
 
 pub(super) fn scenes() -> Vec<Scene> {
     let mut all = vec![walk(), start_stop()];
+    all.extend([(90.0, 3, 16), (180.0, 5, 15)].map(pivot));
     for foot in [Left, Right] {
         all.extend([45.0, 90.0].map(|angle| turn(angle, foot)));
     }
@@ -27,7 +28,7 @@ pub(super) fn scenes() -> Vec<Scene> {
 /// The palm of one side on the box held before the belly.
 pub(super) fn held(side: Foot) -> Grip {
     let s = if side == Left { 1.0 } else { -1.0 };
-    grip(Relative::Chest, [s * 0.5 * BOX[0], -0.26, 0.35], [s * -0.06, 0.02, 1.0], [-s, 0.0, 0.0])
+    grip(Relative::Chest, [s * 0.5 * BOX[0], -0.26, 0.30], [s * -0.06, 0.02, 1.0], [-s, 0.0, 0.0])
 }
 
 /// Holds the box from `from` to `to` seconds of the actor's clock, faded at the ends.
@@ -50,7 +51,7 @@ fn carrier() -> Actor {
 
 fn scene(name: &str, a: Actor, patches: &[(&str, &[&str], i32, i32)]) -> Scene {
     let mut scene = solo(name, a, patches);
-    scene.hold_box(vec![(0, None)]);
+    scene.hold_box(0, None, None);
     scene
 }
 
@@ -94,6 +95,19 @@ fn start_stop() -> Scene {
             ("carry-stop", &["stop", "carry"], stopping, stopped),
         ],
     )
+}
+
+/// Turning in place.
+fn pivot((angle, steps, frames): (f32, usize, i32)) -> Scene {
+    let mut a = carrier();
+    a.stand(20);
+    let from = a.now;
+    a.wait(5);
+    a.pivot(angle.to_radians(), steps, frames);
+    let to = a.now;
+    a.stand(20);
+    let name = format!("carry-pivot-{angle}");
+    scene(&name.clone(), a, &[(&name, &["turn", "in_place", "carry"], from, to)])
 }
 
 fn turn(angle: f32, foot: Foot) -> Scene {

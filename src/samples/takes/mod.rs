@@ -3,6 +3,7 @@
 mod actions;
 mod carry;
 mod greet;
+mod lift;
 mod meet;
 mod place;
 mod push;
@@ -20,6 +21,7 @@ pub(super) fn scenes() -> Vec<Scene> {
         place::scenes(),
         actions::scenes(),
         carry::scenes(),
+        lift::scenes(),
         greet::scenes(),
         push::scenes(),
         talk::scenes(),

@@ -13,7 +13,7 @@ use crate::samples::actor::Actor;
 use crate::samples::gait::NORMAL;
 use crate::samples::gesture::{Grip, Relative};
 use crate::samples::posture::Channel::*;
-use crate::samples::scene::{BOX, Scene};
+use crate::samples::scene::{BOX, GRIP, Scene};
 
 pub(super) fn scenes() -> Vec<Scene> {
     let turns = [-70f32.to_radians(), -100f32.to_radians()];
@@ -133,7 +133,8 @@ fn pass_box(coming: Coming) -> Scene {
         }
         roles.push((i, entries[i], a.now));
     }
-    scene.hold_box(vec![(0, None), (1, Some(now + 0.5 * (give + taken)))]);
+    scene.hold_box(0, None, Some(now + taken));
+    scene.hold_box(1, Some(now + give), None);
     scene.patch(name, &["carry", "friendly"], &roles, Some([now + t, now + t + 1.95]));
     scene
 }
@@ -141,7 +142,12 @@ fn pass_box(coming: Coming) -> Scene {
 /// The palm on the box between the two; giver's and taker's hands just miss each other.
 fn between(side: Foot, below: f32) -> Grip {
     let s = if side == Left { 1.0 } else { -1.0 };
-    grip(Relative::Path, [s * 0.5 * BOX[0], 1.06 - below, 0.5 * APART], [s * -0.06, 0.02, 1.0], [-s, 0.0, 0.0])
+    grip(
+        Relative::Path,
+        [s * 0.5 * BOX[0], 1.06 - below, 0.5 * APART - GRIP[1]],
+        [s * -0.06, 0.02, 1.0],
+        [-s, 0.0, 0.0],
+    )
 }
 
 fn hand_over(a: &mut Actor, begun: f32, give: f32, taken: f32) {

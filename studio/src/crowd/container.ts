@@ -28,7 +28,7 @@ export class Container {
   ) {}
 
   /** Opens a container, or throws a FileProblem: wrong magic, another version, cut or overlong, no JSON object. */
-  static open(buffer: ArrayBuffer, magic: string, version: number): Container {
+  static open(buffer: ArrayBuffer, magic: string, versions: readonly number[]): Container {
     const found = new TextDecoder("latin1").decode(new Uint8Array(buffer, 0, Math.min(8, buffer.byteLength)));
     if (found !== magic.padEnd(8, "\0")) {
       throw new FileProblem("byte 0", `expected the magic bytes "${magic}", found ${shown(found)}`);
@@ -41,8 +41,8 @@ export class Container {
     }
     const view = new DataView(buffer);
     const foundVersion = view.getUint32(8, true);
-    if (foundVersion !== version) {
-      throw new FileProblem("byte 8", `expected version ${version}, found ${foundVersion}`);
+    if (!versions.includes(foundVersion)) {
+      throw new FileProblem("byte 8", `expected version ${versions.join(" or ")}, found ${foundVersion}`);
     }
     const headerLength = view.getUint32(12, true);
     const expected = PRELUDE + headerLength + Number(view.getBigUint64(16, true));

@@ -49,6 +49,20 @@ export interface Character {
   fragments: Fragment[];
 }
 
+/** A box that people hold in both hands; it stays level. */
+export interface Prop {
+  name: string;
+  /** Full extents: width between the hands, height, depth. */
+  size: Vec3;
+  /** First frame on the crowd's clock. */
+  begin: number;
+  frames: number;
+  /** Place of that frame in `propPlaces`. */
+  firstFrame: number;
+  /** Who has it in the hands, first and last frame; otherwise it rests. */
+  holds: { character: number; begin: number; end: number }[];
+}
+
 export interface Crowd {
   fps: number;
   /** As text: 64 bits do not fit a number. */
@@ -69,6 +83,9 @@ export interface Crowd {
   rotations: Int16Array;
   /** x, z per path sample. */
   pathPoints: Float32Array;
+  props: Prop[];
+  /** x, y, z of the middle and the heading (radians about +y) per frame of a prop. */
+  propPlaces: Float32Array;
 }
 
 /** Length of the crowd's life in seconds. */

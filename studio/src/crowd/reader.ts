@@ -1,20 +1,22 @@
 /** Reads a crowd file (`*.crowd`); see src/stage/file.rs for the format. */
 
 import { Container, count, FileProblem, finite, list, object, text, whole } from "./container";
-import type { Build, Character, Crowd, Flesh, Fragment, Joint, Kind, Vec2, Vec3 } from "./model";
+import type { Build, Character, Crowd, Flesh, Fragment, Joint, Kind, Prop, Vec2, Vec3 } from "./model";
 
 export const MAGIC = "CQCROWD";
-export const VERSION = 1;
+/** Files of version 1 have no boxes. */
+export const VERSIONS = [1, 2];
 
 /** The crowd in `buffer`. Throws a FileProblem that names the place. */
 export function readCrowd(buffer: ArrayBuffer): Crowd {
-  const file = Container.open(buffer, MAGIC, VERSION);
+  const file = Container.open(buffer, MAGIC, VERSIONS);
   const { header } = file;
   const domain = object(header.domain, "header.domain");
   const joints = list(object(header.skeleton, "header.skeleton").joints, "header.skeleton.joints").map(joint);
   const root = file.array("root", "f32");
   const rotations = file.array("rotations", "i16");
   const pathPoints = file.array("path_points", "f32");
+  const boxes = props(header.props);
   const crowd: Crowd = {
     fps: finite(header.fps, "header.fps"),
     seed: seedText(header.seed, file.headerText),
@@ -31,6 +33,8 @@ export function readCrowd(buffer: ArrayBuffer): Crowd {
     root,
     rotations,
     pathPoints,
+    props: boxes,
+    propPlaces: boxes.length > 0 ? file.array("prop_places", "f32") : new Float32Array(),
   };
   checkLengths(crowd);
   checkReferences(crowd);
@@ -131,6 +135,33 @@ function readFragment(value: unknown, place: string, firstSample: number): Fragm
   };
 }
 
+/** Files of version 1 have none. */
+function props(value: unknown): Prop[] {
+  let firstFrame = 0;
+  return (value === undefined ? [] : list(value, "header.props")).map((p, index) => {
+    const place = `prop ${index}`;
+    const v = object(p, place);
+    const holds = list(v.holds, `${place}, holds`).map((h, k) => {
+      const hold = object(h, `${place}, hold ${k}`);
+      const [character, begin, end] = ["character", "begin", "end"].map((key) =>
+        count(hold[key], `${place}, hold ${k}, ${key}`),
+      );
+      return { character, begin, end };
+    });
+    const frames = count(v.frames, `${place}, frames`);
+    const prop: Prop = {
+      name: text(v.name, `${place}, name`),
+      size: vector(v.size, 3, `${place}, size`) as Vec3,
+      begin: count(v.begin, `${place}, begin`),
+      frames,
+      firstFrame,
+      holds,
+    };
+    firstFrame += frames;
+    return prop;
+  });
+}
+
 function checkLengths(crowd: Crowd): void {
   const frames = crowd.characters.reduce((sum, c) => sum + c.frames, 0);
   const samples = crowd.characters.reduce((sum, c) => c.fragments.reduce((s, f) => s + f.samples, sum), 0);
@@ -138,10 +169,14 @@ function checkLengths(crowd: Crowd): void {
     ["root", crowd.root.length, frames * 3],
     ["rotations", crowd.rotations.length, frames * crowd.joints.length * 4],
     ["path_points", crowd.pathPoints.length, samples * 2],
+    ["prop_places", crowd.propPlaces.length, crowd.props.reduce((sum, p) => sum + p.frames, 0) * 4],
   ];
   for (const [name, found, expected] of expectations) {
     if (found !== expected) {
-      throw new FileProblem(`array ${name}`, `expected ${expected} numbers for its characters, found ${found}`);
+      throw new FileProblem(
+        `array ${name}`,
+        `expected ${expected} numbers for its ${name === "prop_places" ? "props" : "characters"}, found ${found}`,
+      );
     }
   }
 }
@@ -150,6 +185,10 @@ function checkReferences(crowd: Crowd): void {
   if (crowd.fps <= 0) throw new FileProblem("header.fps", `expected a positive rate, found ${crowd.fps}`);
   for (const [i, kind] of crowd.instances.entries()) {
     if (kind >= crowd.kinds.length) throw new FileProblem(`instance ${i}`, `kind ${kind} does not exist`);
+  }
+  for (const [i, prop] of crowd.props.entries()) {
+    const stranger = prop.holds.find((h) => h.character >= crowd.characters.length);
+    if (stranger) throw new FileProblem(`prop ${i}`, `character ${stranger.character} does not exist`);
   }
   for (const [i, character] of crowd.characters.entries()) {
     if (character.build >= crowd.builds.length) {

@@ -34,6 +34,23 @@ export function sampleRoot(crowd: Crowd, person: number, secs: number, out: Floa
   return true;
 }
 
+/** Middle and heading of a prop at `secs` into `out` (x, y, z, heading); false while it is not there. */
+export function sampleProp(crowd: Crowd, prop: number, secs: number, out: Float32Array | number[]): boolean {
+  const { begin, frames, firstFrame } = crowd.props[prop];
+  const at = secs * crowd.fps - begin;
+  if (!(frames > 0 && at >= 0 && at <= frames - 1)) return false;
+  const i = Math.min(Math.floor(at), Math.max(frames - 2, 0));
+  const j = Math.min(i + 1, frames - 1);
+  for (let k = 0; k < 4; k++) {
+    const a = crowd.propPlaces[(firstFrame + i) * 4 + k];
+    const b = crowd.propPlaces[(firstFrame + j) * 4 + k];
+    // Headings take the short way.
+    const step = k < 3 ? b - a : b - a - 2 * Math.PI * Math.round((b - a) / (2 * Math.PI));
+    out[k] = a + step * (at - i);
+  }
+  return true;
+}
+
 const local = new Float64Array(4);
 
 /** Global joint transforms of a person at `secs` into `pose`; false while absent. */

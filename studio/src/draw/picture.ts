@@ -4,6 +4,7 @@ import { Vector3 } from "three";
 import { type Crowd, duration } from "../crowd/model";
 import { sampleRoot } from "../crowd/sample";
 import { COLOR_MODES, type Store, type View } from "../store";
+import { Boxes } from "./boxes";
 import { Cameras } from "./cameras";
 import { discard } from "./discard";
 import { Loom } from "./loom";
@@ -18,6 +19,7 @@ interface Drawn {
   crowd: Crowd;
   textures: CrowdTextures;
   people: People;
+  boxes: Boxes;
   outlines: PatchOutlines;
   loom: Loom;
   hulls: Hull[];
@@ -66,20 +68,21 @@ export class Picture {
     const before = this.drawn;
     const textures = new CrowdTextures(this.stage.renderer, crowd);
     const people = new People(crowd, textures);
+    const boxes = new Boxes(crowd);
     const all = hulls(crowd);
     const outlines = new PatchOutlines(crowd, all);
     const loom = new Loom(crowd, all);
     this.stage.build(crowd);
-    this.stage.scene.add(people.body, people.spots, outlines.mesh, loom.group);
+    this.stage.scene.add(people.body, people.spots, boxes.group, outlines.mesh, loom.group);
     if (marks) this.stage.scene.add(marks.group);
-    this.drawn = { crowd, textures, people, outlines, loom, hulls: all, marks };
+    this.drawn = { crowd, textures, people, boxes, outlines, loom, hulls: all, marks };
     // After the new one is there: programs that both use are not compiled again.
     if (before) this.drop(before);
     this.aim(this.store.get("view"), false, before !== null);
   }
 
-  private drop({ people, outlines, loom, marks, textures }: Drawn): void {
-    for (const gone of [people.body, people.spots, outlines.mesh, loom.group, marks?.group]) if (gone) discard(gone);
+  private drop({ people, boxes, outlines, loom, marks, textures }: Drawn): void {
+    for (const gone of [people.body, people.spots, boxes.group, outlines.mesh, loom.group, marks?.group]) if (gone) discard(gone);
     textures.dispose();
   }
 
@@ -124,7 +127,7 @@ export class Picture {
     stats.triangles = this.stage.renderer.info.render.triangles;
   }
 
-  private draw({ people, outlines, loom, marks }: Drawn): void {
+  private draw({ people, boxes, outlines, loom, marks }: Drawn): void {
     const { store, stage, cameras, lift } = this;
     const time = store.get("time");
     const inLoom = store.get("view") === "loom";
@@ -133,6 +136,8 @@ export class Picture {
     people.uniforms.chosen.value = store.get("person") ?? -1;
     people.body.visible = people.spots.visible = store.get("bodies");
     people.update(time, lift);
+    boxes.group.visible = store.get("bodies");
+    boxes.update(time, lift, !inLoom);
     outlines.update(time, lift, store.get("outlines"), store.get("color"));
     if (marks) {
       marks.group.visible = !inLoom;

@@ -1,0 +1,83 @@
+//! What a compose file says, names resolved.
+
+use crate::Error;
+use crate::deform::Limits;
+use crate::geom::Ground;
+use crate::motion::BodyPart;
+
+/// A composition: rows are laid out, names are indices.
+#[derive(Clone, Debug)]
+pub(super) struct Composition {
+    pub name: String,
+    pub labels: Vec<String>,
+    pub limits: Limits,
+    pub clips: Vec<Clip>,
+    pub roles: Vec<Role>,
+    pub places: Vec<Place>,
+    pub touches: Vec<Touches>,
+}
+
+/// A piece of a take.
+#[derive(Clone, Debug)]
+pub(super) struct Clip {
+    pub name: String,
+    pub piece: Piece,
+    pub line: usize,
+}
+
+/// Where a clip comes from.
+#[derive(Clone, Debug)]
+pub(super) enum Piece {
+    /// What a person of a take does between two times, seconds.
+    Take { name: String, person: usize, from: Option<f32>, to: Option<f32> },
+    /// A role of a patch.
+    Patch { name: String, role: usize },
+}
+
+/// Somebody, who plays clips.
+#[derive(Clone, Debug)]
+pub(super) struct Role {
+    pub name: String,
+    /// Indices of clips.
+    pub plays: Vec<usize>,
+    /// Where and when the first clip begins.
+    pub start: Option<(Ground, Option<f32>)>,
+    pub line: usize,
+}
+
+/// A moment of a role, or all of a clip.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Moment {
+    pub role: usize,
+    /// Index into what the role plays; `None`: all.
+    pub part: Option<usize>,
+    /// Seconds since that began; `None`: all through.
+    pub seconds: Option<f32>,
+    /// As written.
+    pub text: String,
+}
+
+/// Where somebody stands, seen from another, at one moment or all through a clip.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    pub who: Moment,
+    pub seen_from: Moment,
+    pub at: Ground,
+    /// Seconds by which `who` is later than what `seen_from` says.
+    pub delay: f32,
+    pub line: usize,
+}
+
+/// Hands that touch from one moment to another.
+#[derive(Clone, Debug)]
+pub(super) struct Touches {
+    pub sides: [(usize, BodyPart); 2],
+    pub from: Moment,
+    pub to: Moment,
+    pub line: usize,
+}
+
+/// A problem at a line of the file.
+pub(super) fn bad(line: usize, problem: String) -> Error {
+    Error::invalid("compose file", format!("line {line}"), problem)
+}

@@ -1,0 +1,222 @@
+//! Boxes that the people of a patch hold in both hands: who holds one when, and where it rests otherwise.
+//!
+//! A box stays level; its place follows from the palms of who holds it. A fragment may enter or leave with a box in its
+//! hands: a port's state, which all ports of one pose group share, so that fragments stitch without a word about boxes.
+
+use glam::{Quat, Vec3};
+
+use super::{PatchKind, PatchSet};
+use crate::geom::Upright;
+use crate::motion::contacts::palm;
+use crate::motion::joint::{LEFT_HAND, RIGHT_HAND};
+
+/// Boxes at ports of one pose group may differ by this much, metres.
+const ALIKE: f32 = 0.005;
+/// Longest edge of a box, metres.
+const LARGEST: f32 = 3.0;
+
+/// A box of a patch.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct PatchProp {
+    /// Name, e.g. `box`.
+    pub name: String,
+    /// Full extents in metres: width between the hands, height, depth.
+    pub size: [f32; 3],
+    /// Where the box's middle is, seen from the middle between the palms: up, and ahead of the person. Metres.
+    pub grip: [f32; 2],
+    /// Who holds it when, in order and without gaps; where two holds overlap the box is passed and both hold it.
+    pub holds: Vec<PropHold>,
+    /// Where it rests, in the patch's frame, until the first takes it up; none if the first brings it along.
+    pub before: Option<Upright>,
+    /// Where it rests after the last put it down; none if the last takes it along.
+    pub after: Option<Upright>,
+}
+
+/// A time over which a person of a patch holds a box between the palms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct PropHold {
+    /// Index of the fragment.
+    pub role: u32,
+    /// First frame on the patch's clock.
+    pub begin: u32,
+    /// Last frame, inclusive.
+    pub end: u32,
+}
+
+impl PatchProp {
+    /// The place of the box between two palms.
+    pub fn between(&self, left: Vec3, right: Vec3) -> Upright {
+        at_palms(left, right, self.grip)
+    }
+
+    /// The place of the box in the patch's frame at a frame of the clock, as captured; `None` if nobody of the patch has
+    /// or will have it in the hands at that time.
+    pub fn place(&self, kind: &PatchKind, clock: u32) -> Option<Upright> {
+        if let Some(hold) = self.holds.iter().find(|h| h.begin <= clock && clock <= h.end) {
+            let fragment = &kind.fragments[hold.role as usize];
+            let mut globals: Vec<(Vec3, Quat)> = Vec::new();
+            fragment.motion.globals((clock - fragment.begin) as usize, &mut globals);
+            return Some(self.between(palm(&globals, LEFT_HAND), palm(&globals, RIGHT_HAND)));
+        }
+        let early = self.holds.first().is_some_and(|h| clock < h.begin);
+        if early { self.before } else { self.after }
+    }
+
+    /// What is wrong with the prop itself.
+    pub(super) fn problems(&self, kind: &PatchKind) -> Vec<String> {
+        let mut problems = Vec::new();
+        let mut bad = |problem: String| problems.push(format!("prop {}: {problem}", self.name));
+        let sound = self.size.iter().all(|&s| s > 0.0 && s <= LARGEST)
+            && self.grip.iter().all(|g| g.abs() <= LARGEST)
+            && [self.before, self.after].iter().flatten().all(|r| r.middle.is_finite() && r.heading.is_finite());
+        if !sound {
+            bad(format!("expected extents above 0 and up to {LARGEST} m, and finite places"));
+        }
+        let span = |h: &PropHold| {
+            let fragment = kind.fragments.get(h.role as usize)?;
+            let last = (fragment.motion.len() as u32).checked_sub(1)?.checked_add(fragment.begin)?;
+            (fragment.begin <= h.begin && h.begin <= h.end && h.end <= last).then_some((fragment.begin, last))
+        };
+        let (Some(first), Some(last)) = (self.holds.first(), self.holds.last()) else {
+            bad("expected somebody to hold it, found nobody".into());
+            return problems;
+        };
+        for h in self.holds.iter().filter(|h| span(h).is_none()) {
+            bad(format!("role {} holds it from frame {} to {}, outside its fragment", h.role, h.begin, h.end));
+        }
+        let ordered = |a: &PropHold, b: &PropHold| a.begin < b.begin && b.begin <= a.end && a.end < b.end;
+        for w in self.holds.windows(2).filter(|w| w[0].role == w[1].role || !ordered(&w[0], &w[1])) {
+            bad(format!("role {} does not take it over from role {} in time", w[1].role, w[0].role));
+        }
+        if self.holds.windows(3).any(|w| w[2].begin <= w[0].end) {
+            bad("three people hold it at once".into());
+        }
+        if span(first).is_some_and(|s| (s.0 == first.begin) == self.before.is_some()) {
+            bad(format!("role {} neither brings it along nor takes it up", first.role));
+        }
+        if span(last).is_some_and(|s| (s.1 == last.end) == self.after.is_some()) {
+            bad(format!("role {} neither takes it along nor puts it down", last.role));
+        }
+        problems
+    }
+}
+
+/// The place of a box between two palms: level, its width from the right palm to the left one.
+pub(crate) fn at_palms(left: Vec3, right: Vec3, [up, ahead]: [f32; 2]) -> Upright {
+    let across = left - right;
+    let heading = (-across.z).atan2(across.x);
+    let forward = Vec3::new(heading.sin(), 0.0, heading.cos());
+    Upright { middle: (left + right) * 0.5 + Vec3::Y * up + forward * ahead, heading }
+}
+
+/// The place seen in a mirror on the plane x = 0.
+pub(super) fn mirrored(at: Upright) -> Upright {
+    Upright { middle: at.middle * Vec3::new(-1.0, 1.0, 1.0), heading: -at.heading }
+}
+
+/// A box at the captured height over the ground; on the ground where it all but is.
+pub(super) fn settled(at: Upright, height: f32) -> Upright {
+    /// Hands are this far off when they grasp what lies on the ground, metres.
+    const NEARLY: f32 = 0.08;
+    let lowest = 0.5 * height;
+    let y = if at.middle.y < lowest + NEARLY { lowest } else { at.middle.y };
+    Upright { middle: at.middle.with_y(y), ..at }
+}
+
+impl PatchKind {
+    /// Index of the prop that a role has in the hands at its entry.
+    pub fn carried_in(&self, role: u32) -> Option<usize> {
+        let brings = |p: &PatchProp| p.before.is_none() && p.holds.first().is_some_and(|h| h.role == role);
+        self.props.iter().position(brings)
+    }
+
+    /// Index of the prop that a role has in the hands at its exit.
+    pub fn carried_out(&self, role: u32) -> Option<usize> {
+        let takes = |p: &PatchProp| p.after.is_none() && p.holds.last().is_some_and(|h| h.role == role);
+        self.props.iter().position(takes)
+    }
+
+    /// True if a box lies there before or after the patch.
+    pub fn leaves_box(&self) -> bool {
+        self.props.iter().any(|p| p.before.is_some() || p.after.is_some())
+    }
+}
+
+/// A port of a set, for messages: kind, role, which end, group, prop in the hands.
+struct Port<'a> {
+    kind: &'a PatchKind,
+    role: usize,
+    end: &'static str,
+    prop: Option<&'a PatchProp>,
+}
+
+impl PatchSet {
+    /// For every pose group, whether people of its ports have a box in their hands.
+    pub(crate) fn laden_groups(&self) -> Vec<bool> {
+        let mut laden = vec![false; self.groups.len()];
+        for kind in &self.kinds {
+            for (role, f) in kind.fragments.iter().enumerate() {
+                laden[f.entry_group as usize] |= kind.carried_in(role as u32).is_some();
+                laden[f.exit_group as usize] |= kind.carried_out(role as u32).is_some();
+            }
+        }
+        laden
+    }
+
+    /// Ports of one pose group that differ in what the hands hold, and roles that hold two boxes at once.
+    pub(super) fn prop_problems(&self) -> Vec<(String, String)> {
+        let mut problems = Vec::new();
+        let mut first: Vec<Option<Port>> = self.groups.iter().map(|_| None).collect();
+        for kind in &self.kinds {
+            for (k, prop) in kind.props.iter().enumerate() {
+                problems.extend(prop.problems(kind).into_iter().map(|p| (kind.name.clone(), p)));
+                for other in kind.props[..k].iter().filter(|other| in_same_hands(prop, other)) {
+                    problems.push((kind.name.clone(), format!("{} and {} in the same hands", other.name, prop.name)));
+                }
+            }
+            for (role, f) in kind.fragments.iter().enumerate() {
+                let carried = [kind.carried_in(role as u32), kind.carried_out(role as u32)];
+                for ((group, end), prop) in [(f.entry_group, "entry"), (f.exit_group, "exit")].into_iter().zip(carried)
+                {
+                    let port = Port { kind, role, end, prop: prop.map(|p| &kind.props[p]) };
+                    let Some(known) = first.get_mut(group as usize) else { continue };
+                    match known {
+                        None => *known = Some(port),
+                        Some(known) if !alike(known.prop, port.prop) => {
+                            let name = &self.groups[group as usize].name;
+                            problems.push((port.kind.name.clone(), port.unlike(known, name)));
+                        }
+                        Some(_) => {}
+                    }
+                }
+            }
+        }
+        problems
+    }
+}
+
+impl Port<'_> {
+    fn unlike(&self, other: &Port, group: &str) -> String {
+        let hands = |p: &Port| p.prop.map_or("empty hands".into(), |p| format!("a box of {:?} m", p.size));
+        let there = format!("the {} of role {} of kind {}", other.end, other.role, other.kind.name);
+        let (expected, found) = (hands(other), hands(self));
+        format!(
+            "role {}: its {} in pose group {group}: expected {expected} as at {there}, found {found}",
+            self.role, self.end
+        )
+    }
+}
+
+fn in_same_hands(a: &PatchProp, b: &PatchProp) -> bool {
+    let meet = |h: &PropHold| b.holds.iter().any(|g| g.role == h.role && g.begin <= h.end && h.begin <= g.end);
+    a.holds.iter().any(meet)
+}
+
+fn alike(a: Option<&PatchProp>, b: Option<&PatchProp>) -> bool {
+    let near = |p: &[f32], q: &[f32]| p.iter().zip(q).all(|(p, q)| (p - q).abs() <= ALIKE);
+    match (a, b) {
+        (None, None) => true,
+        (Some(a), Some(b)) => near(&a.size, &b.size) && near(&a.grip, &b.grip),
+        _ => false,
+    }
+}

@@ -1,0 +1,104 @@
+//! Exact tests of the boxes that people carry or that lie there: they enter no body, no wall and no other box.
+
+use glam::{Quat, Vec2, Vec3};
+
+use super::bake::Chains;
+use super::domain::Domain;
+use super::tracks::TrackId;
+use crate::geom::{Capsule, Cuboid};
+use crate::motion::body_capsules;
+use crate::refine::{Body, Performance};
+use crate::stage::Prop;
+
+/// Interpenetration that is let pass, metres.
+const TOLERANCE: f32 = 0.005;
+/// No body reaches further from its hips than this, metres.
+const REACH: f32 = 1.1;
+/// Points of a box's edges that are tested against walls are this far apart, metres.
+const SPACING: f32 = 0.06;
+
+/// The people to blame for boxes that enter something at a tick: two different ones, or one alone.
+pub(super) fn in_the_way(chains: Chains, played: &Performance, tick: i32) -> Vec<(TrackId, TrackId)> {
+    let here: Vec<(&Prop, Cuboid)> =
+        played.props.iter().filter_map(|p| Some((p, p.at_frame(u32::try_from(tick).ok()?)?))).collect();
+    let mut pairs = Vec::new();
+    for (i, (prop, cuboid)) in here.iter().enumerate() {
+        let keeper = keeper(prop, tick);
+        for (t, body) in played.bodies.iter().enumerate() {
+            if depth_in_body(cuboid, body, tick) > TOLERANCE && !is_partner(chains, prop, t, tick) {
+                // Where it lies, who runs into it is to go another way.
+                let held = prop.holders(tick as u32).next().is_some();
+                let other = keeper.filter(|_| held).unwrap_or(t);
+                pairs.push((other.min(t), other.max(t)));
+            }
+        }
+        let Some(keeper) = keeper else { continue };
+        if is_in_wall(cuboid, chains.domain) {
+            pairs.push((keeper, keeper));
+        }
+        for (other, theirs) in &here[..i] {
+            let near = cuboid.at.middle.distance(theirs.at.middle) < cuboid.radius() + theirs.radius();
+            if near && cuboid.overlap(theirs) > TOLERANCE {
+                let second = self::keeper(other, tick).unwrap_or(keeper);
+                pairs.push((keeper.min(second), keeper.max(second)));
+            }
+        }
+    }
+    pairs
+}
+
+/// Who has the box in the hands, or had it last, or will have it first.
+fn keeper(prop: &Prop, tick: i32) -> Option<TrackId> {
+    let tick = tick.max(0) as u32;
+    let last = prop.holds.iter().rev().find(|h| h.begin <= tick);
+    last.or(prop.holds.first()).map(|h| h.character as TrackId)
+}
+
+/// True for who holds the box, and for who is in one patch with the holder: they are as near it as they were captured.
+fn is_partner(chains: Chains, prop: &Prop, person: TrackId, tick: i32) -> bool {
+    let instance = |t: TrackId| chains.piece_at(t, tick).map(|p| p.instance);
+    let mine = instance(person);
+    let mut holders = prop.holders(tick as u32).map(|h| h as TrackId);
+    holders.any(|h| h == person || instance(h) == mine) || is_lifting(chains, prop, person, tick)
+}
+
+/// True while a person is in the patch in which they take the lying box up or put it down.
+fn is_lifting(chains: Chains, prop: &Prop, person: TrackId, tick: i32) -> bool {
+    let Some(piece) = chains.piece_at(person, tick) else { return false };
+    let ends = prop.holds.iter().filter(|h| h.character as TrackId == person).flat_map(|h| [h.begin, h.end]);
+    piece.leaves_box() && ends.into_iter().any(|f| (piece.begin..=piece.end).contains(&(f as i32)))
+}
+
+/// How deep a box is in a body of canonical build at a tick, metres.
+fn depth_in_body(cuboid: &Cuboid, body: &Body, tick: i32) -> f32 {
+    let Some(frame) = usize::try_from(tick - body.begin as i32).ok().filter(|&f| f < body.root.len()) else {
+        return 0.0;
+    };
+    let (middle, root) = (cuboid.at.middle, body.root[frame]);
+    if Vec2::new(middle.x - root.x, middle.z - root.z).length() > REACH + cuboid.radius() {
+        return 0.0;
+    }
+    let mut globals: Vec<(Vec3, Quat)> = Vec::new();
+    let mut capsules = Vec::new();
+    body.globals(frame, &mut globals);
+    body_capsules(&globals, &mut capsules);
+    depth_in(cuboid, &capsules)
+}
+
+/// How deep a box is in a body's capsules, metres; 0 if it is not.
+pub(super) fn depth_in(cuboid: &Cuboid, capsules: &[Capsule]) -> f32 {
+    capsules.iter().map(|c| cuboid.penetration(c)).fold(0.0, f32::max)
+}
+
+fn is_in_wall(cuboid: &Cuboid, domain: &Domain) -> bool {
+    let place = cuboid.at.ground().position;
+    if domain.holds(place, cuboid.radius()) {
+        return false;
+    }
+    let plan = cuboid.plan();
+    (0..plan.len()).any(|i| {
+        let (a, b) = (plan[i], plan[(i + 1) % plan.len()]);
+        let steps = (a.distance(b) / SPACING).ceil().max(1.0) as usize;
+        (0..steps).any(|k| !domain.holds(a.lerp(b, k as f32 / steps as f32), -TOLERANCE))
+    })
+}

@@ -1,0 +1,238 @@
+//! Placed pieces: where a role's body is at every tick, and the boxes that it leaves lying.
+
+use glam::Vec2;
+
+use super::domain::Domain;
+use super::footprint::{DISCS, Footprint};
+use super::library::{Library, Role};
+use crate::geom::{Ground, Turn};
+use crate::motion::MotionPath;
+
+/// In place of a source frame: a box that lies there before (+ 0) or after (+ 1) the piece.
+const LYING: u32 = u32::MAX - 1;
+
+/// A body at one tick, or the box that lies there in its place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Body {
+    pub position: Vec2,
+    turn: Turn,
+    pub reach: f32,
+    frame: u32,
+}
+
+/// One role of an instance, placed: from tick `begin` to tick `end`, along `path` (world, one sample per source frame).
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    /// Index of the role in the library.
+    pub role: u32,
+    /// Index of the instance.
+    pub instance: u32,
+    /// Tick of the entry.
+    pub begin: i32,
+    /// Tick of the exit.
+    pub end: i32,
+    /// The deformed path.
+    pub path: MotionPath,
+    /// First tick of `bodies`.
+    pub shown_from: i32,
+    /// The bodies on the ticks it occupies: [begin, end) cut to [0, horizon); before and after them the box that lies
+    /// there until the piece takes it up, or from when it puts it down.
+    pub bodies: Vec<Body>,
+}
+
+impl Piece {
+    /// A role placed rigidly with its entry at `from`.
+    pub fn rigid(library: &Library, domain: &Domain, role: u32, instance: u32, from: Ground, begin: i32) -> Self {
+        let source = &library.roles[role as usize];
+        let path = MotionPath {
+            points: source.path.points.iter().map(|&p| from.apply(p)).collect(),
+            headings: source.path.headings.iter().map(|h| h + from.heading).collect(),
+        };
+        Self::along(library, domain, role, instance, path, begin, begin + source.ticks)
+    }
+
+    /// A role placed along a deformed path.
+    pub fn along(
+        library: &Library,
+        domain: &Domain,
+        role: u32,
+        instance: u32,
+        path: MotionPath,
+        begin: i32,
+        end: i32,
+    ) -> Self {
+        let source = &library.roles[role as usize];
+        let last = path.len() - 1;
+        let step = last as f32 / (end - begin) as f32;
+        let bodies = (begin.max(0)..end.min(domain.horizon)).map(|tick| {
+            let at = (tick - begin) as f32 * step;
+            let i = (at as usize).min(last - 1);
+            let t = at - i as f32;
+            let frame = (at + 0.5) as usize;
+            Body {
+                position: path.points[i].lerp(path.points[i + 1], t),
+                turn: Turn::from_angle(path.headings[i] * (1.0 - t) + path.headings[i + 1] * t),
+                reach: source.reach[frame],
+                frame: frame as u32,
+            }
+        });
+        let bodies = bodies.collect();
+        let mut piece = Self { role, instance, begin, end, path, shown_from: begin.max(0), bodies };
+        piece.lay_boxes(source, domain.horizon);
+        piece
+    }
+
+    /// Puts boxes where they lie before the piece begins and after it ends.
+    fn lay_boxes(&mut self, source: &Role, horizon: i32) {
+        let lying = |k: usize, ticks: i32| {
+            let rest = source.rests[k].as_ref().filter(|_| ticks > 0)?;
+            let at = self.path.at(rest.frame).then(rest.from_path);
+            let body = Body { position: at.position, turn: at.turn(), reach: rest.reach, frame: LYING + k as u32 };
+            Some(std::iter::repeat_n(body, ticks as usize))
+        };
+        let (before, after) = (lying(0, self.begin.min(horizon)), lying(1, horizon - self.end.max(0)));
+        self.bodies.extend(after.into_iter().flatten());
+        if let Some(before) = before {
+            self.bodies.splice(..0, before);
+            self.shown_from = 0;
+        }
+    }
+
+    /// State at the entry.
+    pub fn entry(&self) -> Ground {
+        self.path.at(0)
+    }
+
+    /// State at the exit.
+    pub fn exit(&self) -> Ground {
+        self.path.at(self.path.len() - 1)
+    }
+
+    /// What is there at a tick.
+    pub fn body(&self, tick: i32) -> Option<&Body> {
+        self.bodies.get(usize::try_from(tick - self.shown_from).ok()?)
+    }
+
+    /// Place and heading at a tick the piece occupies.
+    pub fn state(&self, tick: i32) -> Ground {
+        let body = self.body(tick).expect("a tick the piece occupies");
+        Ground::new(body.position, body.turn.angle())
+    }
+
+    /// True if the person is in the piece at a tick.
+    pub fn is_played(&self, tick: i32) -> bool {
+        self.begin <= tick && tick < self.end
+    }
+
+    /// Ticks inside the domain's time.
+    pub fn ticks_inside(&self) -> usize {
+        self.bodies.iter().filter(|b| b.frame < LYING).count()
+    }
+
+    /// True if a box lies there before or after the piece.
+    pub fn leaves_box(&self) -> bool {
+        [self.bodies.first(), self.bodies.last()].into_iter().flatten().any(|b| b.frame >= LYING)
+    }
+
+    /// True if this piece and another are ever in each other's way.
+    pub fn meets(&self, other: &Self, library: &Library) -> bool {
+        let until = |p: &Self| p.shown_from + p.bodies.len() as i32;
+        let ticks = self.shown_from.max(other.shown_from)..until(self).min(until(other));
+        ticks.into_iter().any(|tick| depth(library, self, other, tick).is_some())
+    }
+}
+
+/// How deep the footprints of two pieces overlap at a tick, metres; `None` if either is not there, or they are apart.
+pub(super) fn depth(library: &Library, a: &Piece, b: &Piece, tick: i32) -> Option<f32> {
+    let body = |p: &Piece| {
+        let body = p.body(tick)?;
+        Some((body.position, body.reach, world_discs(body, footprint(library, p.role, body))))
+    };
+    let ((at, reach, own), (other_at, other_reach, others)) = (body(a)?, body(b)?);
+    if at.distance(other_at) >= reach + other_reach {
+        return None;
+    }
+    let pairs = own.iter().flat_map(|p| others.iter().map(move |q| p.z + q.z - p.truncate().distance(q.truncate())));
+    pairs.reduce(f32::max).filter(|&d| d > 0.0)
+}
+
+/// The discs of a body, seen from its place.
+pub(super) fn footprint<'a>(library: &'a Library, role: u32, body: &Body) -> &'a Footprint {
+    let role = &library.roles[role as usize];
+    match body.frame.checked_sub(LYING) {
+        None => &role.footprints[body.frame as usize],
+        Some(k) => &role.rests[k as usize].as_ref().expect("a box lies there").footprint,
+    }
+}
+
+/// The discs of a body in the world.
+pub(super) fn world_discs(body: &Body, footprint: &Footprint) -> Footprint {
+    footprint.map(|d| (body.position + body.turn.apply(d.truncate())).extend(d.z))
+}
+
+/// True if two sets of discs meet.
+pub(super) fn overlap(a: &Footprint, b: &Footprint) -> bool {
+    for p in a {
+        for q in b {
+            let apart = p.z + q.z;
+            if p.truncate().distance_squared(q.truncate()) < apart * apart {
+                return true;
+            }
+        }
+    }
+    debug_assert_eq!(a.len(), DISCS);
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::common::plain_set;
+    use super::super::occupancy::Occupancy;
+    use super::super::scene::Scene;
+    use super::*;
+    use crate::deform::Limits;
+    use crate::geom::Upright;
+    use crate::patch::{PatchProp, PropHold};
+    use glam::Vec3;
+
+    #[test]
+    fn a_box_is_in_the_way_before_it_is_taken_up_and_after_it_was_put_down() {
+        let mut set = plain_set();
+        let role_of = |set: &crate::patch::PatchSet, name: &str| {
+            let kinds = set.kinds.iter().take_while(|k| k.name != name);
+            kinds.map(|k| k.people()).sum::<usize>() as u32
+        };
+        let lies = Upright { middle: Vec3::new(0.0, 0.15, 0.6), heading: 0.4 };
+        set.kinds.iter_mut().find(|k| k.name == "idle-20").unwrap().props.push(PatchProp {
+            name: "box".into(),
+            size: [0.4, 0.3, 0.3],
+            grip: [0.0; 2],
+            holds: vec![PropHold { role: 0, begin: 5, end: 15 }],
+            before: Some(lies),
+            after: Some(lies),
+        });
+        let library = Library::new(&set, Limits::default());
+        let domain = Domain::new(&Scene::demo()).unwrap();
+        let mut occupancy = Occupancy::new(&domain, &library);
+        let at = |x: f32, z: f32| Ground::new(Vec2::new(x, z), 0.0);
+        let lifting = Piece::rigid(&library, &domain, role_of(&set, "idle-20"), 0, at(6.0, 6.0), 100);
+        assert!(lifting.leaves_box() && lifting.is_played(100) && !lifting.is_played(99));
+        assert_eq!((lifting.ticks_inside(), lifting.state(105).position), (19, Vec2::new(6.0, 6.0)));
+        let walker =
+            |x: f32, begin: i32| Piece::rigid(&library, &domain, role_of(&set, "cycle-1"), 1, at(x, 6.2), begin);
+        let id = occupancy.insert(lifting);
+        for begin in [-10, 20, 200, domain.horizon - 20] {
+            let (through, past) = (walker(6.0, begin), walker(7.2, begin));
+            assert!(!occupancy.is_free(&library, &domain, &through), "at tick {begin}");
+            assert_eq!(occupancy.blockers(&library, &domain, &through), Some(vec![id]));
+            assert!(through.meets(occupancy.piece(id), &library) && !past.meets(occupancy.piece(id), &library));
+            assert!(occupancy.is_free(&library, &domain, &past), "at tick {begin}");
+        }
+        // Nobody is there who could be cast.
+        let mut near = vec![];
+        occupancy.near(50, Vec2::new(6.0, 6.6), 2.0, &mut near);
+        assert!(near.is_empty());
+        occupancy.hide(id);
+        assert!(occupancy.is_free(&library, &domain, &walker(6.0, 20)));
+    }
+}
