@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from itertools import permutations
 from pathlib import Path as FilePath
@@ -102,21 +103,14 @@ def node(axes: Axes, patches: PatchSet, name: str, place: np.ndarray, fault: boo
     """A group: somebody in its pose, and its name."""
     edge = FAULT if fault else style.INK
     axes.add_patch(Circle((place[0], place[1]), NODE, facecolor=style.FLOOR, edgecolor=edge, linewidth=1.8, zorder=4))
+    lines = textwrap.wrap(name.replace("_", " "), 11)[:2]
     body = typical(patches, name)
     if body is not None:
-        feet = place + [0, -0.34]
+        feet = place + [0, -0.34 + 0.08 * (len(lines) - 1)]
         draw_people(axes, [(body, BODY)], View.beside(np.radians(30)), feet, (FIGURE, FIGURE), zorder=6)
-    axes.text(
-        place[0],
-        place[1] - 0.52,
-        name.replace("_", " "),
-        size=9.5,
-        weight="bold",
-        color=edge,
-        ha="center",
-        va="center",
-        zorder=7,
-    )
+    for line, text in enumerate(lines):
+        y = place[1] - 0.52 + 0.08 * (len(lines) - 1) - 0.135 * line
+        axes.text(place[0], y, text, size=9.5, weight="bold", color=edge, ha="center", va="center", zorder=7)
 
 
 def typical(patches: PatchSet, group: str) -> np.ndarray | None:

@@ -22,13 +22,9 @@ fn fragment(entry: u32, exit: u32, frames: usize, ahead: f32, turn: f32) -> Frag
 
 fn kind(name: String, ends: &[(u32, u32)], turn: f32) -> PatchKind {
     PatchKind {
-        props: vec![],
         name,
-        labels: Vec::new(),
         fragments: ends.iter().map(|&(a, b)| fragment(a, b, 31, 1.0, turn)).collect(),
-        contacts: Vec::new(),
-        core: None,
-        mirrored: false,
+        ..PatchKind::default()
     }
 }
 
