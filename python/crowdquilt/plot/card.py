@@ -64,10 +64,10 @@ def rounded(
 
 
 def fitted(axes: Axes, place: np.ndarray, text: str, room: float, size: float, **looks: Any) -> None:
-    """A line of text; wider than `room` inches it is made smaller, and if that is not enough shortened in its middle."""
+    """A line of text; one wider than `room` inches is made smaller, and if need be shortened in its middle."""
     label = axes.text(place[0], place[1], text, va="baseline", zorder=6, size=size, **looks)
     share = room / max(label.get_window_extent().width / axes.figure.dpi, 1e-6)
-    label.set_size(size * min(max(share, 0.78), 1.0))
+    label.set_fontsize(size * min(max(share, 0.78), 1.0))
     letters = int(len(text) * share / 0.78)
     if letters < len(text):
         keep = max(letters - 2, 2)
@@ -199,14 +199,8 @@ def words(axes: Axes, card: Card, corner: np.ndarray) -> None:
     for role, own in enumerate(card.kind.roles):
         y = top + role * step
         axes.scatter(left + 0.04, y, s=20, color=ROLES[role % len(ROLES)], zorder=6)
-        fitted(
-            axes,
-            np.array([left + 0.14, y + 0.035]),
-            f"{own.entry} → {own.exit}".replace("_", " "),
-            room - 0.14,
-            size=8,
-            color=style.INK,
-        )
+        ports = f"{own.entry} → {own.exit}".replace("_", " ")
+        fitted(axes, np.array([left + 0.14, y + 0.035]), ports, room - 0.14, size=8, color=style.INK)
     lines = [(", ".join(card.kind.labels).replace("_", " "), style.FAINT)]
     if card.kind.contacts:
         touches = "1 touch" if card.kind.contacts == 1 else f"{card.kind.contacts} touches"
