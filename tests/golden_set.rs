@@ -69,7 +69,6 @@ fn set() -> PatchSet {
     let touch = |role, part| Touch { role, part };
     let contact = Contact { a: touch(0, BodyPart::RightHand), b: touch(1, BodyPart::Torso), begin: 4, end: 9 };
     let alone = PatchKind {
-        props: vec![],
         name: "step".into(),
         labels: vec!["walk".into(), "slow".into()],
         fragments: vec![fragment(1, 0, 7, 0, 1)],
@@ -77,7 +76,6 @@ fn set() -> PatchSet {
         ..PatchKind::default()
     };
     let pair = PatchKind {
-        props: vec![],
         name: "meet".into(),
         labels: vec!["friendly".into()],
         fragments: vec![fragment(2, 2, 9, 1, 2), fragment(3, 0, 12, 2, 0)],

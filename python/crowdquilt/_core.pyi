@@ -353,13 +353,20 @@ def take_distances(clips: list[Clip]) -> list[tuple[int, int, float, float]]: ..
 
 @final
 class Take:
-    name: str
-    people: int
-    annotated: bool
-    events: list[tuple[str, list[int], float, float]]
-    patches: list[str]
-    together: float
-    notes: list[str]
+    @property
+    def name(self) -> str: ...
+    @property
+    def people(self) -> int: ...
+    @property
+    def annotated(self) -> bool: ...
+    @property
+    def events(self) -> list[tuple[str, list[int], float, float]]: ...
+    @property
+    def patches(self) -> list[str]: ...
+    @property
+    def together(self) -> float: ...
+    @property
+    def notes(self) -> list[str]: ...
 
 @final
 class Made:

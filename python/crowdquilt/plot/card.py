@@ -67,8 +67,8 @@ def fitted(axes: Axes, place: np.ndarray, text: str, room: float, size: float, *
     """A line of text; one wider than `room` inches is made smaller, and if need be shortened in its middle."""
     label = axes.text(place[0], place[1], text, va="baseline", zorder=6, size=size, **looks)
     share = room / max(label.get_window_extent().width / axes.figure.dpi, 1e-6)
-    label.set_fontsize(size * min(max(share, 0.78), 1.0))
-    letters = int(len(text) * share / 0.78)
+    label.set_fontsize(size * min(max(share, 0.68), 1.0))
+    letters = int(len(text) * share / 0.68)
     if letters < len(text):
         keep = max(letters - 2, 2)
         label.set_text(f"{text[: keep - keep // 2]}…{text[len(text) - keep // 2 :]}")
