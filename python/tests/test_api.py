@@ -183,4 +183,5 @@ def test_boxes_are_where_the_hands_are(small: cq.Outcome) -> None:
                 assert np.linalg.norm(wrists - prop.positions[frame - begin], axis=1).max() < 0.4
     there, places = crowd.props_at(2.0)
     assert places.shape == (len(there), 4)
-    np.testing.assert_allclose(places[0, :3], crowd.props[there[0]].positions[60 - crowd.props[there[0]].span[0]], atol=1e-4)
+    prop = crowd.props[there[0]]
+    np.testing.assert_allclose(places[0, :3], prop.positions[60 - prop.span[0]], atol=1e-4)

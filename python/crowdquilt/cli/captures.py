@@ -10,8 +10,8 @@ import typer
 from rich.markup import escape
 
 from crowdquilt import inspection, motion, patch, samples
-from crowdquilt.cli.app import app, console, example
 from crowdquilt._core import CrowdquiltError
+from crowdquilt.cli.app import app, console, example
 from crowdquilt.cli.progress import make_set
 from crowdquilt.cli.tables import facts, kind_table, take_table
 from crowdquilt.outputs import whole_folder
@@ -136,8 +136,14 @@ def patches(
     other, act together), and a few recurring poses at which patches begin and end. Files that end in .compose.toml
     compose patches by hand of clips of the takes.
     """
-    options = {"threshold": threshold, "groups": groups, "alone": alone, "touch_gap": touch_gap, "near": near}
-    options |= {"compose": compose}
+    options: dict[str, Any] = {
+        "threshold": threshold,
+        "groups": groups,
+        "alone": alone,
+        "touch_gap": touch_gap,
+        "near": near,
+        "compose": compose,
+    }
     try:
         made = make_set(source, captures, **{name: value for name, value in options.items() if value is not None})
     except ValueError as error:
