@@ -136,8 +136,8 @@ def patches(
     other, act together), and a few recurring poses at which patches begin and end. Files that end in .compose.toml
     compose patches by hand of clips of the takes.
     """
-    options = {"threshold": threshold, "groups": groups, "alone": alone, "touch_gap": touch_gap, "near": near}
-    options |= {"compose": compose}
+    options: dict[str, Any] = {"threshold": threshold, "groups": groups, "alone": alone, "touch_gap": touch_gap}
+    options |= {"near": near, "compose": compose}
     try:
         made = make_set(source, captures, **{name: value for name, value in options.items() if value is not None})
     except ValueError as error:
