@@ -4,8 +4,9 @@
 
 use std::path::PathBuf;
 
+use crowdquilt::geom::Upright;
 use crowdquilt::motion::{BodyPart, FPS, JOINT_COUNT, Motion, MotionPath};
-use crowdquilt::patch::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};
+use crowdquilt::patch::{Contact, Fragment, PatchKind, PatchProp, PatchSet, PoseGroup, PropHold, Touch};
 use glam::{Quat, Vec2, Vec3};
 use serde_json::{Value, json};
 
@@ -41,25 +42,46 @@ fn fragment(seed: usize, begin: u32, frames: usize, entry_group: u32, exit_group
     Fragment { motion: motion(seed, frames), begin, entry_group, exit_group }
 }
 
+fn taken_up_and_put_down() -> PatchProp {
+    let rest = |x: f32| Upright { middle: Vec3::new(x, 0.15, 0.4), heading: 0.3 * x };
+    PatchProp {
+        name: "parcel".into(),
+        size: [0.3, 0.25, 0.2],
+        grip: [0.05, 0.1],
+        holds: vec![PropHold { role: 0, begin: 2, end: 4 }],
+        before: Some(rest(0.5)),
+        after: Some(rest(1.5)),
+    }
+}
+
+fn passed() -> PatchProp {
+    PatchProp {
+        name: "box".into(),
+        size: [0.4, 0.3, 0.3],
+        grip: [-0.02, 0.08],
+        holds: vec![PropHold { role: 1, begin: 0, end: 7 }, PropHold { role: 0, begin: 5, end: 10 }],
+        before: None,
+        after: None,
+    }
+}
+
 fn set() -> PatchSet {
     let touch = |role, part| Touch { role, part };
     let contact = Contact { a: touch(0, BodyPart::RightHand), b: touch(1, BodyPart::Torso), begin: 4, end: 9 };
     let alone = PatchKind {
-        props: vec![],
         name: "step".into(),
         labels: vec!["walk".into(), "slow".into()],
         fragments: vec![fragment(1, 0, 7, 0, 1)],
-        contacts: Vec::new(),
-        core: None,
-        mirrored: false,
+        props: vec![taken_up_and_put_down()],
+        ..PatchKind::default()
     };
     let pair = PatchKind {
-        props: vec![],
         name: "meet".into(),
         labels: vec!["friendly".into()],
         fragments: vec![fragment(2, 2, 9, 1, 2), fragment(3, 0, 12, 2, 0)],
         contacts: vec![contact],
         core: Some((3, 10)),
+        props: vec![passed()],
         mirrored: true,
     };
     let groups = ["stand", "walk_left", "walk_right"].map(|name| PoseGroup { name: name.into() });
@@ -76,6 +98,21 @@ fn positions(set: &PatchSet) -> Value {
                 f.motion.globals(frame, &mut globals);
                 let joints: Vec<[f32; 3]> = globals.iter().map(|(p, _)| p.to_array()).collect();
                 all.push(json!({ "kind": k, "role": r, "frame": frame, "joints": joints }));
+            }
+        }
+    }
+    json!({ "bodies": all, "boxes": boxes(set) })
+}
+
+/// Where the boxes are at every frame at which they are there.
+fn boxes(set: &PatchSet) -> Value {
+    let mut all = Vec::new();
+    for (k, kind) in set.kinds.iter().enumerate() {
+        let last = kind.fragments.iter().map(|f| f.begin + f.motion.len() as u32).max().unwrap();
+        for frame in 0..last {
+            if let Some(at) = kind.props[0].place(kind, frame) {
+                let place = [at.middle.x, at.middle.y, at.middle.z, at.heading];
+                all.push(json!({ "kind": k, "frame": frame, "joints": [place] }));
             }
         }
     }
@@ -96,12 +133,14 @@ fn the_studios_golden_set_is_what_rust_writes() {
     let filed = PatchSet::load(&file).unwrap();
     assert_eq!(filed.groups, set.groups);
     for (a, b) in filed.kinds.iter().zip(&set.kinds) {
-        let outline = |k: &PatchKind| (k.name.clone(), k.labels.clone(), k.contacts.clone(), k.core, k.mirrored);
+        let outline =
+            |k: &PatchKind| (k.name.clone(), k.labels.clone(), k.contacts.clone(), k.props.clone(), k.core, k.mirrored);
         assert_eq!(outline(a), outline(b));
     }
     let told: Value = serde_json::from_str(&std::fs::read_to_string(&places).unwrap()).unwrap();
     let numbers = |v: &Value| -> Vec<f64> {
-        let joints = v.as_array().unwrap().iter().flat_map(|p| p["joints"].as_array().unwrap());
+        let places = ["bodies", "boxes"].map(|key| v[key].as_array().unwrap()).into_iter().flatten();
+        let joints = places.flat_map(|p| p["joints"].as_array().unwrap());
         joints.flat_map(|j| j.as_array().unwrap()).map(|n| n.as_f64().unwrap()).collect()
     };
     for places in [positions(&filed), positions(&set)] {

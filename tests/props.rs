@@ -83,12 +83,12 @@ fn hand_over(tone: usize) -> Crowd {
     let mut b = Builder { instances: vec![] };
     let (index, pass) = kind("pass-box-stand");
     let instance = b.instance(index);
-    let begin = 108;
+    let begin = kind("take-up").1.fragments[0].motion.len() as i32 + 35;
     let role = |b: &Builder, r: u32| {
         b.place(pass, instance, r, Ground::IDENTITY, begin + pass.fragments[r as usize].begin as i32)
     };
     let (giver, taker) = (role(&b, 0), role(&b, 1));
-    let idle = ["idle-1.5"; 3];
+    let idle = ["idle-1.5"; 4];
     let chains =
         [b.chain(&["take-up", "carry-idle"], giver, &idle), b.chain(&idle, taker, &["carry-pivot-90", "put-down"])];
     let last = chains.iter().map(|c| c.last().unwrap().end).min().unwrap();

@@ -17,6 +17,7 @@ from crowdquilt._core import (
     Take,
     connectivity,
 )
+from crowdquilt._core import kind_boxes as boxes
 from crowdquilt._core import kind_capsules as capsules
 from crowdquilt._core import kind_positions as positions
 from crowdquilt._core import make_patches as make
@@ -32,6 +33,7 @@ __all__ = [
     "Role",
     "Steering",
     "Take",
+    "boxes",
     "capsules",
     "connectivity",
     "cut",

@@ -1,13 +1,13 @@
 //! Glue of `crowdquilt::patch::connectivity`, and the bodies of a set's kinds.
 
 use crowdquilt::motion::{BODY_CAPSULES, JOINT_COUNT, body_capsules};
-use crowdquilt::patch::connectivity as core;
+use crowdquilt::patch::{PatchProp, connectivity as core};
 use glam::{Quat, Vec3};
-use numpy::PyArray3;
+use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
 
 use crate::error::{run, to_python};
-use crate::numbers::stack;
+use crate::numbers::{stack, table};
 use crate::patch::PatchSet;
 
 /// What one can do alone from a pose group: the least and the most over the kinds of one person that begin there.
@@ -166,6 +166,24 @@ pub fn kind_capsules<'py>(
     };
     stack(py, every_frame(py, patches, kind, role, add)?, BODY_CAPSULES.len(), 7)
 }
+
+/// The boxes of one kind: of each its size (width, height, depth; metres), the first frame of the kind's clock at which
+/// it is there, and (frames, 4) places of its middle x, y, z and its heading, in the patch's own frame.
+#[pyfunction]
+pub fn kind_boxes<'py>(py: Python<'py>, patches: &PatchSet, kind: usize) -> PyResult<Vec<KindBox<'py>>> {
+    let missing = || crowdquilt::Error::invalid("patch set", format!("kind {kind}"), "does not exist");
+    let kind = patches.0.kinds.get(kind).ok_or_else(missing).map_err(to_python)?;
+    let last = kind.fragments.iter().map(|f| f.begin + f.motion.len() as u32).max().unwrap_or(0);
+    let place = |prop: &PatchProp| {
+        let mut there = (0..last).filter_map(|frame| Some((frame, prop.place(kind, frame)?))).peekable();
+        let begin = there.peek().map_or(0, |(frame, _)| *frame);
+        let values = there.flat_map(|(_, at)| [at.middle.x, at.middle.y, at.middle.z, at.heading]).collect();
+        Ok((prop.size.into(), begin, table(py, values, 4)?))
+    };
+    kind.props.iter().map(place).collect()
+}
+
+type KindBox<'py> = ((f32, f32, f32), u32, Bound<'py, PyArray2<f32>>);
 
 /// What `add` makes of the joints' global transforms at every frame of a role.
 fn every_frame(

@@ -24,7 +24,7 @@ mod _core {
     use super::check::{Report, Row, Summary, check_crowd, summary};
     #[pymodule_export]
     use super::connectivity::{
-        Component, Connectivity, GroupLinks, Link, Steering, connectivity, kind_capsules, kind_positions,
+        Component, Connectivity, GroupLinks, Link, Steering, connectivity, kind_boxes, kind_capsules, kind_positions,
     };
     #[pymodule_export]
     use super::error::CrowdquiltError;

@@ -18,7 +18,7 @@ import crowdquilt as cq
 from conftest import crowdquilt
 from crowdquilt import plot, server
 from crowdquilt.plot.cards import cards
-from crowdquilt.plot.figures import View, bodies_of, shapes
+from crowdquilt.plot.figures import View, bodies_of, box_faces, limbs
 
 HIPS, HEAD = 0, 13
 
@@ -176,8 +176,27 @@ def test_somebody_seen_from_the_side_looks_to_the_right(samples: cq.PatchSet) ->
     _, near = view.project(np.array([np.cos(heading), 0.0, -np.sin(heading)]))
     assert ahead[0] > 0.8 and up[0] == 0 and up[1] > 0.9
     assert near < 0, "who goes to the right shows the right side; the left is farther"
-    polygons, fills, _ = shapes(bodies_of(samples, index, 0)[0], view, (0.2, 0.4, 0.6))
-    assert len(polygons) == len(fills) == 34
+    painted = limbs(bodies_of(samples, index, 0)[0], view, (0.2, 0.4, 0.6))
+    assert sum(len(limb.polygons) for limb in painted) == sum(len(limb.fills) for limb in painted) == 34
+
+
+def test_of_a_box_three_faces_are_seen_where_it_is() -> None:
+    view, place = View.beside(0.3), np.array([1.0, 1.1, -0.5, 0.8])
+    box = box_faces(np.array([0.4, 0.3, 0.2]), place, view)
+    assert len(box.polygons) == len(box.fills) == 6, "an outline and a fill each"
+    middle, near = view.project(place[:3])
+    corners = np.concatenate(box.polygons[3:])
+    assert np.allclose((corners.min(axis=0) + corners.max(axis=0)) / 2, middle, atol=1e-6)
+    assert box.near == pytest.approx(float(near))
+
+
+def test_boxes_of_kinds_are_in_the_hands_of_who_holds_them(samples: cq.PatchSet) -> None:
+    carried = [(i, cq.patch.boxes(samples, i)) for i, k in enumerate(samples.kinds) if k.name.startswith("carry-walk")]
+    assert carried
+    for index, [(size, begin, places)] in carried:
+        assert begin == 0 and len(places) == samples.kinds[index].roles[0].frames and max(size) < 1
+        hands = cq.patch.positions(samples, index, 0)[:, [17, 21]].mean(axis=1)
+        assert np.linalg.norm(places[:, :3] - hands, axis=1).max() < 0.4
 
 
 @pytest.mark.skipif(not (server.STUDIO / "index.html").exists(), reason="the studio is not built: run `make studio`")

@@ -54,10 +54,11 @@ struct Captured {
 
 impl Captured {
     /// Frames at which it certainly holds.
-    fn inner(&self, last_frame: u32) -> std::ops::RangeInclusive<u32> {
+    fn inner(&self, last_frame: u32) -> std::ops::Range<u32> {
         let end = (self.end - ROUNDING).floor().min(last_frame as f64);
         let begin = (self.begin + ROUNDING).ceil().max(0.0);
-        if begin > end { 1..=0 } else { begin as u32..=end as u32 }
+        // Casts of what lies before the first frame end there.
+        begin as u32..(end + 1.0) as u32
     }
 
     fn covers(&self, frame: u32) -> bool {

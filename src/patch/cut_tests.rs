@@ -179,7 +179,7 @@ fn a_bad_capture_is_named() {
 /// The take with a box that both people hold in turn.
 fn with_box(held: &str) -> String {
     let prop = format!("\"props\": [{{\"name\": \"box\", \"size\": [0.4, 0.3, 0.3], \"held\": {held}}}], \"patches\"");
-    TAKE.replacen("\"patches\"", &prop, 1)
+    TAKE.replacen("\"patches\"", &prop, 1).replace("\"walk_left\"", "\"carry_walk_left\"")
 }
 
 #[test]

@@ -186,7 +186,7 @@ fn seed(tracks: &mut Tracks, wish: usize, taste: Taste, clock: &mut Clock, rng: 
     let mut failures = 0;
     let boxes = tracks.library.laden.contains(&true);
     while tracks.tracks.len() < wish && failures < SEED_PATIENCE && clock.goes_on(|| state(tracks, Phase::Seed)) {
-        let laden = boxes && tracks.tracks.len() % LADEN_EVERY == 0 && failures < LADEN_PATIENCE;
+        let laden = boxes && tracks.tracks.len().is_multiple_of(LADEN_EVERY) && failures < LADEN_PATIENCE;
         // Fewer patches go on with a box in the hands: the search needs longer.
         let taste = if laden { Taste { expansions: LADEN_EXPANSIONS, ..taste } } else { taste };
         failures = if seed_person(tracks, laden, taste, rng) { 0 } else { failures + 1 };

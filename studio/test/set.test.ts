@@ -1,7 +1,7 @@
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { FileProblem } from "../src/crowd/container";
-import { Pose, samplePose } from "../src/crowd/sample";
+import { Pose, samplePose, sampleProp } from "../src/crowd/sample";
 import { crowdOf } from "../src/set/crowd";
 import { listed, stepKind } from "../src/set/list";
 import { seconds } from "../src/set/model";
@@ -34,7 +34,7 @@ describe("a patch set written by Rust", () => {
 
   it("has every joint where Rust has it, once a kind is a crowd", () => {
     type Told = { kind: number; role: number; frame: number; joints: [number, number, number][] };
-    const told = JSON.parse(readFileSync(golden("kinds.json"), "utf8")) as Told[];
+    const { bodies: told } = JSON.parse(readFileSync(golden("kinds.json"), "utf8")) as { bodies: Told[] };
     expect(told).toHaveLength(9);
     const pose = new Pose(set.joints.length);
     for (const { kind, role, frame, joints } of told) {
@@ -52,6 +52,44 @@ describe("a patch set written by Rust", () => {
         expect(pose.positions[j * 3 + 2] + dz).toBeCloseTo(z, 3);
       }
     }
+  });
+});
+
+describe("the boxes of a patch set written by Rust", () => {
+  it("have their sizes and holders", () => {
+    expect(set.kinds[0].props[0]).toMatchObject({ name: "parcel", holds: [{ role: 0, begin: 2, end: 4 }] });
+    expect(set.kinds[0].props[0].before?.middle[1]).toBeCloseTo(0.15, 6);
+    expect(set.kinds[1].props[0]).toMatchObject({ name: "box", before: null, after: null });
+    const [box] = crowdOf(set, set.kinds[1]).props;
+    expect(box).toMatchObject({ begin: 0, frames: 11 });
+    expect(box.holds).toEqual([
+      { character: 1, begin: 0, end: 7 },
+      { character: 0, begin: 5, end: 10 },
+    ]);
+  });
+
+  it("are where Rust has them, at rest and in the hands", () => {
+    type Told = { kind: number; frame: number; joints: [[number, number, number, number]] };
+    const { boxes } = JSON.parse(readFileSync(golden("kinds.json"), "utf8")) as { boxes: Told[] };
+    expect(boxes).toHaveLength(7 + 11);
+    const at = [0, 0, 0, 0];
+    for (const { kind, frame, joints } of boxes) {
+      const crowd = crowdOf(set, set.kinds[kind]);
+      const { firstFrame } = set.kinds[kind].roles[0];
+      const [dx, dz] = [0, 1].map((k) => set.points[firstFrame * 2 + k] - crowd.pathPoints[k]);
+      expect(sampleProp(crowd, 0, frame / set.fps, at)).toBe(true);
+      const [x, y, z, heading] = joints[0];
+      for (const [found, told] of [
+        [at[0] + dx, x],
+        [at[1], y],
+        [at[2] + dz, z],
+        [Math.sin(at[3]), Math.sin(heading)],
+        [Math.cos(at[3]), Math.cos(heading)],
+      ]) {
+        expect(found).toBeCloseTo(told, 3);
+      }
+    }
+    expect(sampleProp(crowdOf(set, set.kinds[1]), 0, 11 / set.fps, at)).toBe(false);
   });
 });
 
@@ -145,6 +183,7 @@ describe("a broken set", () => {
     ["a part that is none", () => problem(altered('"torso"', '"tarso"')), /kind 1, contact 0, b: expected a part/],
     ["too many frames", () => problem(altered('"frames":7', '"frames":8')), /array points: expected 58/],
     ["a role of one frame", () => problem(altered('"frames":7', '"frames":1')), /kind 0, role 0: expected at least 2/],
+    ["a box in nobody's hands", () => problem(altered('"begin":5,"end":10', '"begin":1,"end":10')), /prop box: role 0/],
     ["no rate", () => problem(altered('"fps":30', '"fps":-1')), /header.fps/],
   ])("gives one clear message: %s", (_, found, message) => {
     expect(found()).toMatch(message);

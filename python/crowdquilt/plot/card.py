@@ -63,11 +63,12 @@ def rounded(
     return box
 
 
-def fitted(axes: Axes, place: np.ndarray, text: str, room: float, **looks: Any) -> None:
-    """A line of text, shortened in its middle where it is wider than `room` inches."""
-    label = axes.text(place[0], place[1], text, va="baseline", zorder=6, **looks)
-    width = label.get_window_extent().width / axes.figure.dpi
-    letters = int(len(text) * room / max(width, 1e-6))
+def fitted(axes: Axes, place: np.ndarray, text: str, room: float, size: float, **looks: Any) -> None:
+    """A line of text; one wider than `room` inches is made smaller, and if need be shortened in its middle."""
+    label = axes.text(place[0], place[1], text, va="baseline", zorder=6, size=size, **looks)
+    share = room / max(label.get_window_extent().width / axes.figure.dpi, 1e-6)
+    label.set_fontsize(size * min(max(share, 0.68), 1.0))
+    letters = int(len(text) * share / 0.68)
     if letters < len(text):
         keep = max(letters - 2, 2)
         label.set_text(f"{text[: keep - keep // 2]}…{text[len(text) - keep // 2 :]}")
@@ -75,11 +76,11 @@ def fitted(axes: Axes, place: np.ndarray, text: str, room: float, **looks: Any) 
 
 def strip(axes: Axes, card: Card, corner: np.ndarray) -> None:
     """The key poses side by side, each with its second below."""
-    moments = [(frame, card.moment(frame)) for frame in card.moments]
-    reach = {frame: extent([body for _, body in people], card.view) for frame, people in moments}
+    moments = [(frame, *card.moment(frame)) for frame in card.moments]
+    reach = {frame: extent([body for _, body in people], card.view) for frame, people, _ in moments}
 
     def wanted() -> float:
-        return sum(width(frame) for frame, _ in moments) + BETWEEN * (len(moments) - 1)
+        return sum(width(frame) for frame, *_ in moments) + BETWEEN * (len(moments) - 1)
 
     def width(frame: int) -> float:
         return float(reach[frame][1][0] - reach[frame][0][0])
@@ -87,16 +88,16 @@ def strip(axes: Axes, card: Card, corner: np.ndarray) -> None:
     # People far apart would make everybody small.
     while STRIP[2] / wanted() < LEAST_SCALE and len(moments) > 1:
         moments.remove(max(moments, key=lambda moment: width(moment[0])))
-    tallest = max(reach[frame][1][1] - reach[frame][0][1] for frame, _ in moments)
+    tallest = max(reach[frame][1][1] - reach[frame][0][1] for frame, *_ in moments)
     scale = min(SCALE, STRIP[2] / wanted(), TALLEST / tallest)
     spare = (STRIP[2] - scale * wanted()) / len(moments)
     floor = corner[1] + STRIP[3] - 0.16
     x = corner[0] + spare / 2
-    for frame, people in moments:
+    for frame, people, boxes in moments:
         (left, bottom), (right, _) = reach[frame]
         raised = scale * min(float(bottom), 0.0)
         bodies = [(body, ROLES[role % len(ROLES)]) for role, body in people]
-        draw_people(axes, bodies, card.view, (x - scale * left, floor + raised), (scale, -scale))
+        draw_people(axes, bodies, card.view, (x - scale * left, floor + raised), (scale, -scale), boxes=boxes)
         ends = [x - 0.04, x + scale * (right - left) + 0.04]
         axes.plot(ends, [floor] * 2, color="#cbc6ba", linewidth=1.0, solid_capstyle="round", zorder=2)
         axes.text(
@@ -198,9 +199,8 @@ def words(axes: Axes, card: Card, corner: np.ndarray) -> None:
     for role, own in enumerate(card.kind.roles):
         y = top + role * step
         axes.scatter(left + 0.04, y, s=20, color=ROLES[role % len(ROLES)], zorder=6)
-        fitted(
-            axes, np.array([left + 0.14, y + 0.035]), f"{own.entry} → {own.exit}", room - 0.14, size=8, color=style.INK
-        )
+        ports = f"{own.entry} → {own.exit}".replace("_", " ")
+        fitted(axes, np.array([left + 0.14, y + 0.035]), ports, room - 0.14, size=8, color=style.INK)
     lines = [(", ".join(card.kind.labels).replace("_", " "), style.FAINT)]
     if card.kind.contacts:
         touches = "1 touch" if card.kind.contacts == 1 else f"{card.kind.contacts} touches"

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from crowdquilt._core import Connectivity, Kind, PatchSet
+from crowdquilt._core import Connectivity, Kind, PatchSet, kind_boxes
 from crowdquilt.plot.figures import View, bodies_of
 
 
@@ -35,12 +35,21 @@ class Card:
         own = [(role, frame - r.begin) for role, r in enumerate(self.kind.roles)]
         return [(role, self.bodies[role][f]) for role, f in own if 0 <= f < self.kind.roles[role].frames]
 
-    def moment(self, frame: int) -> list[tuple[int, np.ndarray]]:
-        """The same with the middle of the people at the origin."""
+    @cached_property
+    def boxes(self) -> list[tuple[np.ndarray, int, np.ndarray]]:
+        """Of every box: size, first frame, places (frames, 4)."""
+        return [(np.array(size), begin, places) for size, begin, places in kind_boxes(self.patches, self.index)]
+
+    def moment(self, frame: int) -> tuple[list[tuple[int, np.ndarray]], list[tuple[np.ndarray, np.ndarray]]]:
+        """The same and the boxes (sizes and places), with the middle of the people at the origin."""
         people = self.at(frame)
         middle = np.mean([body[0, [0, 2]] for _, body in people], axis=0)
         shift = np.array([middle[0], 0, middle[1]] * 2 + [0])
-        return [(role, body - shift) for role, body in people]
+        there = [
+            (size, places[frame - begin]) for size, begin, places in self.boxes if 0 <= frame - begin < len(places)
+        ]
+        aside = np.array([middle[0], 0, middle[1], 0])
+        return [(role, body - shift) for role, body in people], [(size, place - aside) for size, place in there]
 
     @cached_property
     def view(self) -> View:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
+from matplotlib.colors import to_rgb
 
 from crowdquilt._core import PatchSet, kind_capsules, kind_positions
 from crowdquilt.plot.style import INK, Colour, mix
@@ -18,6 +20,7 @@ HEAD = 3
 SHOULDERS = 2
 HEAD_JOINT = 13
 NECK_RADIUS = 0.052
+BOARD = to_rgb("#b68a5a")
 OUTLINE = 0.022
 PITCH = np.radians(7)
 TURNED = np.radians(24)  # away from straight from the side
@@ -58,6 +61,15 @@ class View:
         return places, near * np.cos(PITCH) + up * np.sin(PITCH)
 
 
+@dataclass(frozen=True)
+class Painted:
+    """Polygons on the sheet with their fills, in order; and how near they are."""
+
+    near: float
+    polygons: list[np.ndarray]
+    fills: list[Colour]
+
+
 def bodies_of(patches: PatchSet, kind: int, role: int) -> np.ndarray:
     """(frames, capsules, 7) the capsules of a role's body, a neck included."""
     capsules = kind_capsules(patches, kind, role)
@@ -76,45 +88,65 @@ def stadiums(ends: np.ndarray, radii: np.ndarray, corners: int = 9) -> np.ndarra
     return np.concatenate([a[:, None] + cap, b[:, None] - cap], axis=1)
 
 
-def shapes(body: np.ndarray, view: View, colour: Colour) -> tuple[list[np.ndarray], list[Colour], float]:
-    """What to fill, in order, to paint one body (capsules, 7), in metres on the sheet; and how near it is."""
+def limbs(body: np.ndarray, view: View, colour: Colour) -> list[Painted]:
+    """What to fill, limb by limb, to paint one body (capsules, 7), in metres on the sheet."""
     ends, depths = view.project(body[:, :6].reshape(-1, 2, 3))
     edge = mix(colour, INK, 0.8)
     outlines, bodies = (stadiums(ends, body[:, 6] + grow) for grow in (OUTLINE, 0.0))
     near = depths.mean(axis=1)
-    polygons: list[np.ndarray] = []
-    fills: list[Colour] = []
-    for limb in sorted(LIMBS, key=lambda limb: float(near[limb].mean())):
-        polygons += [outlines[i] for i in limb]
-        fills += [edge] * len(limb)
+    painted = []
+    for limb in LIMBS:
+        depth = float(near[limb].mean())
         # What is behind the middle of the body is in its shade.
-        shade = 0.30 * float(np.clip((near.mean() - near[limb].mean()) / 0.25, 0, 1))
-        for i in limb:
-            polygons.append(bodies[i])
-            fills.append(mix(mix(colour, "white", 0.32 if i in (HEAD, len(body) - 1) else 0.0), INK, shade))
-    return polygons, fills, float(near.mean())
+        shade = 0.30 * float(np.clip((near.mean() - depth) / 0.25, 0, 1))
+        tones = [mix(colour, "white", 0.32 if i in (HEAD, len(body) - 1) else 0.0) for i in limb]
+        fills = [edge] * len(limb) + [mix(tone, INK, shade) for tone in tones]
+        painted.append(Painted(depth, [*outlines[limb], *bodies[limb]], fills))
+    return painted
+
+
+def box_faces(size: np.ndarray, place: np.ndarray, view: View) -> Painted:
+    """The faces of a level box that are seen; `place` is its middle x, y, z and its heading."""
+    sin, cos = np.sin(place[3]), np.cos(place[3])
+    # To its left, up, and ahead.
+    axes = np.array([[cos, 0, -sin], [0, 1, 0], [sin, 0, cos]]) * size[:, None] / 2
+    found = []
+    for k in range(3):
+        out, a, b = axes[k], axes[(k + 1) % 3], axes[(k + 2) % 3]
+        for sign in (1.0, -1.0):
+            corners = place[:3] + sign * out + np.array([a + b, a - b, -a - b, -a + b])
+            places, depths = view.project(corners)
+            if view.project(sign * out)[1] > 0:
+                found.append((float(depths.mean()), places, mix(BOARD, INK, 0.0 if k == 1 else 0.18)))
+    found.sort(key=lambda face: face[0])
+    middle = float(view.project(place[:3])[1])
+    outline = [places + OUTLINE * np.sign(places - places.mean(axis=0)) for _, places, _ in found]
+    edges = [mix(BOARD, INK, 0.8)] * len(found)
+    return Painted(middle, [*outline, *(face[1] for face in found)], [*edges, *(face[2] for face in found)])
 
 
 def draw_people(
-    axes: Axes, bodies: list[tuple[np.ndarray, Colour]], view: View, place: Any, scale: Any, zorder: float = 5
+    axes: Axes,
+    bodies: list[tuple[np.ndarray, Colour]],
+    view: View,
+    place: Any,
+    scale: Any,
+    zorder: float = 5,
+    boxes: Sequence[tuple[np.ndarray, np.ndarray]] = (),
 ) -> None:
-    """Paint bodies and their shadows, the farthest first.
+    """Paint bodies and their shadows, and boxes (sizes and places), the farthest first.
 
     `place` is where the origin is, `scale` how many of the axes' units are a metre to the right and upwards.
     """
     place, scale = np.asarray(place), np.asarray(scale)
-    painted = sorted((shapes(body, view, colour) for body, colour in bodies), key=lambda p: p[2])
-    spots = [spot(body, view) for body, _ in bodies]
-    axes.add_collection(
-        PolyCollection(
-            [place + scale * s for s in spots],
-            facecolors=(0.15, 0.14, 0.12, 0.13),
-            edgecolors="none",
-            zorder=zorder - 1,
-        )
-    )
-    polygons = [place + scale * polygon for p in painted for polygon in p[0]]
-    fills = [fill for p in painted for fill in p[1]]
+    painted = [limb for body, colour in bodies for limb in limbs(body, view, colour)]
+    painted += [box_faces(size, at, view) for size, at in boxes]
+    painted.sort(key=lambda p: p.near)
+    shade = (0.15, 0.14, 0.12, 0.13)
+    shadows = [place + scale * spot(body, view) for body, _ in bodies]
+    axes.add_collection(PolyCollection(shadows, facecolors=shade, edgecolors="none", zorder=zorder - 1))
+    polygons = [place + scale * polygon for p in painted for polygon in p.polygons]
+    fills = [fill for p in painted for fill in p.fills]
     axes.add_collection(PolyCollection(polygons, facecolors=fills, edgecolors="none", zorder=zorder))
 
 

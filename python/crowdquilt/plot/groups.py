@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from itertools import permutations
 from pathlib import Path as FilePath
@@ -35,11 +36,13 @@ def groups(patches: PatchSet, path: str | FilePath | None = None, dpi: int = 150
     found = connectivity(patches)
     names = ordered([g for component in found.components for g in component.groups], found)
     places = around(len(names))
+    if len(names):
+        places = places - (places.max(axis=0) + places.min(axis=0)) / 2
     half = np.abs(places).max(axis=0, initial=0.0) + NODE + 0.85
     notes = notes_of(found)
     wide = max(2 * half[0], 8.2)
     rows = len(names) + 1
-    foot = 0.5 + 0.26 * rows + 0.24 * len(notes) + 0.35
+    foot = 0.4 + 0.26 * rows + 0.24 * len(notes) + 0.1
     tall = 1.0 + 2 * half[1] + foot
     page = style.new_figure(wide, tall)
     axes = page.add_axes((0, foot / tall, 1, 2 * half[1] / tall))
@@ -100,21 +103,14 @@ def node(axes: Axes, patches: PatchSet, name: str, place: np.ndarray, fault: boo
     """A group: somebody in its pose, and its name."""
     edge = FAULT if fault else style.INK
     axes.add_patch(Circle((place[0], place[1]), NODE, facecolor=style.FLOOR, edgecolor=edge, linewidth=1.8, zorder=4))
+    lines = textwrap.wrap(name.replace("_", " "), 11)[:2]
     body = typical(patches, name)
     if body is not None:
-        feet = place + [0, -0.34]
+        feet = place + [0, -0.34 + 0.08 * (len(lines) - 1)]
         draw_people(axes, [(body, BODY)], View.beside(np.radians(30)), feet, (FIGURE, FIGURE), zorder=6)
-    axes.text(
-        place[0],
-        place[1] - 0.52,
-        name.replace("_", " "),
-        size=9.5,
-        weight="bold",
-        color=edge,
-        ha="center",
-        va="center",
-        zorder=7,
-    )
+    for line, text in enumerate(lines):
+        y = place[1] - 0.52 + 0.08 * (len(lines) - 1) - 0.135 * line
+        axes.text(place[0], y, text, size=9.5, weight="bold", color=edge, ha="center", va="center", zorder=7)
 
 
 def typical(patches: PatchSet, group: str) -> np.ndarray | None:
@@ -157,7 +153,7 @@ def links(axes: Axes, found: Connectivity, where: dict[str, np.ndarray], faulty:
         width = 0.8 + 0.4 * float(np.log2(1 + link.alone + link.together))
         arrow(axes, where[link.entry], where[link.exit], colour, width, counts, dashed=not link.alone)
     for entry, exit_ in found.missing:
-        arrow(axes, where[entry], where[exit_], FAULT, 1.6, [("missing", FAULT)], dashed=True, bend=0.42)
+        arrow(axes, where[entry], where[exit_], FAULT, 1.6, [("missing", FAULT)], dashed=True, bend=0.3)
 
 
 def arrow(
@@ -168,7 +164,7 @@ def arrow(
     width: float,
     counts: list[tuple[str, str]],
     dashed: bool,
-    bend: float = 0.14,
+    bend: float = 0.07,
 ) -> None:
     """An arrow from group to group, bent to its left so that both ways are seen, or a loop; counts in its middle."""
     if np.allclose(a, b):

@@ -36,8 +36,8 @@
 //! A moment is `"ann@1.2"` (seconds since ann's first clip began) or `"ann.bow@0.2"` (since the bow began); without
 //! seconds a place holds all through the clip. Two moments in one place happen at one time.
 //!
-//! Clips are joined at ports of one pose group (`chain.rs`), everybody is placed, and what is still to hold bends paths and
-//! times by the least squares of [`crate::deform::Web`] (`solve.rs`).
+//! Clips are joined at ports of one pose group (`chain`), everybody is placed, and what is still to hold bends paths and
+//! times by the least squares of [`crate::deform::Web`] (`solve`).
 
 mod chain;
 mod clear;

@@ -114,10 +114,12 @@ impl Writer<'_> {
     fn nobody_alone(&self) -> String {
         let used = (0..self.set.groups.len()).filter(|&g| self.found.groups[g].used());
         let used: Vec<String> = used.map(|g| format!("'{}'", self.name(g as u32))).collect();
+        let between = match &used[..] {
+            [one] => format!("from {one} back to {one}"),
+            _ => format!("to and fro between {}", listed(&used)),
+        };
         format!(
-            "nobody acts alone, and only people alone lead from patch to patch: capture somebody who goes to and fro \
-             between {}",
-            listed(&used)
+            "nobody acts alone, and only people alone lead from patch to patch: capture somebody who goes {between}"
         )
     }
 

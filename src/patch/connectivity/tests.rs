@@ -22,19 +22,15 @@ fn fragment(entry: u32, exit: u32, frames: usize, ahead: f32, turn: f32) -> Frag
 
 fn kind(name: String, ends: &[(u32, u32)], turn: f32) -> PatchKind {
     PatchKind {
-        props: vec![],
         name,
-        labels: Vec::new(),
         fragments: ends.iter().map(|&(a, b)| fragment(a, b, 31, 1.0, turn)).collect(),
-        contacts: Vec::new(),
-        core: None,
-        mirrored: false,
+        ..PatchKind::default()
     }
 }
 
 /// A set of kinds given by their people's groups; odd kinds turn left, even ones right.
 fn set(names: &[&str], kinds: &[&[(u32, u32)]]) -> PatchSet {
-    let turn = |i: usize| if i % 2 == 0 { -1.0 } else { 1.0 };
+    let turn = |i: usize| if i.is_multiple_of(2) { -1.0 } else { 1.0 };
     PatchSet {
         groups: names.iter().map(|n| PoseGroup { name: (*n).into() }).collect(),
         kinds: kinds.iter().enumerate().map(|(i, ends)| kind(format!("k{i}"), ends, turn(i))).collect(),
@@ -152,6 +148,12 @@ fn a_set_of_people_together_only() {
     assert_eq!((&found.not_left[..], &found.not_entered[..]), (&[0][..], &[0][..]));
     assert!(one_advice(&found).contains("nobody acts alone"), "{:?}", found.advice);
     assert!(one_advice(&found).ends_with("between 'stand' and 'sit'"), "{:?}", found.advice);
+}
+
+#[test]
+fn a_set_of_people_together_in_one_pose() {
+    let found = connectivity(&set(&NAMES, &[&[(0, 0), (0, 0)]]));
+    assert!(one_advice(&found).ends_with("goes from 'stand' back to 'stand'"), "{:?}", found.advice);
 }
 
 #[test]

@@ -15,10 +15,10 @@ use crate::samples::scene::{BOX, GRIP, Scene};
 /// How far in front of the body the middle of the box lies (m): toes and knees stay clear of it.
 const AHEAD: f32 = 0.52;
 /// Seconds from standing to the grasp, and from there to standing.
-const DOWN: f32 = 1.0;
-const UP: f32 = 1.15;
+const DOWN: f32 = 1.2;
+const UP: f32 = 1.3;
 /// Frames of the whole, either way.
-const FRAMES: i32 = 72;
+const FRAMES: i32 = 84;
 
 pub(super) fn scenes() -> Vec<Scene> {
     vec![take_up(), put_down()]

@@ -81,7 +81,7 @@ function builds(value: unknown, joints: readonly Joint[]): Build[] {
   });
 }
 
-function vector(value: unknown, length: number, place: string): readonly number[] {
+export function vector(value: unknown, length: number, place: string): readonly number[] {
   const v = list(value, place).map((n) => finite(n, place));
   if (v.length !== length) throw new FileProblem(place, `expected ${length} numbers, found ${v.length}`);
   return v;

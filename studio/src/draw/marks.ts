@@ -14,9 +14,10 @@ import {
   SpriteMaterial,
   SRGBColorSpace,
 } from "three";
-import type { Crowd, Vec2 } from "../crowd/model";
-import { Pose, rotate, samplePose, sampleRoot } from "../crowd/sample";
+import type { Crowd, Vec2, Vec3 } from "../crowd/model";
+import { Pose, samplePose, sampleRoot } from "../crowd/sample";
 import type { BodyPart, PatchSet, SetKind } from "../set/model";
+import { partOf } from "../set/parts";
 import { roleColor } from "./palette";
 
 const PATH_WIDTH = 0.03;
@@ -25,8 +26,6 @@ const CORE_WIDTH = 0.055;
 const STEP = 0.03;
 /** From a port to its label, metres. */
 const LABEL_AWAY = 0.4;
-/** From the wrist to the middle of the palm, as src/motion/contacts.rs. */
-const PALM = 0.085;
 
 export class Marks {
   readonly group = new Group();
@@ -71,15 +70,10 @@ export class Marks {
   }
 
   /** Where a part of somebody's body is; null while absent. */
-  private part(role: number, part: BodyPart, secs: number): [number, number, number] | null {
+  private part(role: number, part: BodyPart, secs: number): Vec3 | null {
     const pose = this.poses[role];
     if (!samplePose(this.crowd, role, secs, pose)) return null;
-    const joint = this.crowd.joints.findIndex((j) => j.name === (part === "torso" ? "spine2" : part));
-    if (joint < 0) return null;
-    const out = part === "left_hand" ? PALM : part === "right_hand" ? -PALM : 0;
-    const turned = rotate(pose.rotations.subarray(joint * 4, joint * 4 + 4), out, 0, 0);
-    const [x, y, z] = pose.positions.subarray(joint * 3, joint * 3 + 3);
-    return [x + turned[0], y + turned[1], z + turned[2]];
+    return partOf(this.crowd, pose, part);
   }
 }
 

@@ -82,7 +82,8 @@ export class Picture {
   }
 
   private drop({ people, boxes, outlines, loom, marks, textures }: Drawn): void {
-    for (const gone of [people.body, people.spots, boxes.group, outlines.mesh, loom.group, marks?.group]) if (gone) discard(gone);
+    for (const gone of [people.body, people.spots, boxes.group, outlines.mesh, loom.group, marks?.group])
+      if (gone) discard(gone);
     textures.dispose();
   }
 

@@ -1,6 +1,7 @@
 /** One kind of a set as a crowd of its own, which the player and the renderer know how to show: every role a person. */
 
 import type { Character, Crowd, Flesh, Vec2 } from "../crowd/model";
+import { boxesOf } from "./boxes";
 import type { PatchSet, Role, SetKind } from "./model";
 
 /** Floor around everybody's path, metres. */
@@ -28,7 +29,7 @@ export function crowdOf(set: PatchSet, kind: SetKind): Crowd {
       turn(rotations, at * joints * 4, set.headings[f]);
     }
   }
-  return {
+  const crowd: Crowd = {
     fps: set.fps,
     seed: "0",
     joints: set.joints,
@@ -42,7 +43,10 @@ export function crowdOf(set: PatchSet, kind: SetKind): Crowd {
     root,
     rotations,
     pathPoints,
+    props: [],
+    propPlaces: new Float32Array(),
   };
+  return { ...crowd, ...boxesOf(kind, crowd, centre) };
 }
 
 function canonical(): Flesh {

@@ -1,6 +1,6 @@
 /** A patch set as the studio sees it. Names and units as in src/patch/set.rs: metres, seconds, radians. */
 
-import type { Joint } from "../crowd/model";
+import type { Joint, Vec3 } from "../crowd/model";
 
 /** One person's part in a kind. Its first frame is the entry, its last the exit. */
 export interface Role {
@@ -30,6 +30,26 @@ export interface Contact {
   end: number;
 }
 
+/** A place that stays upright: middle and heading (radians about +y). */
+export interface Upright {
+  middle: Vec3;
+  heading: number;
+}
+
+/** A box that people hold in both hands; see src/patch/prop.rs. */
+export interface SetProp {
+  name: string;
+  /** Full extents: width between the hands, height, depth. */
+  size: Vec3;
+  /** Where its middle is, seen from the middle between the palms: up, and ahead of the person. */
+  grip: readonly [up: number, ahead: number];
+  /** Who holds it from frame to frame of the kind's clock, both included; in order, without gaps, at least one. */
+  holds: { role: number; begin: number; end: number }[];
+  /** Where it rests before the first takes it up and after the last put it down. */
+  before: Upright | null;
+  after: Upright | null;
+}
+
 export interface SetKind {
   name: string;
   labels: string[];
@@ -37,6 +57,7 @@ export interface SetKind {
   /** First and last frame of what people do together. */
   core: readonly [begin: number, end: number] | null;
   contacts: Contact[];
+  props: SetProp[];
   roles: Role[];
   /** Last frame of the kind's clock. */
   lastFrame: number;

@@ -1,15 +1,27 @@
 /** Reads a patch-set file (`*.patches`); see src/patch/file.rs for the format. */
 
 import { Container, count, FileProblem, finite, list, object, shown, text } from "../crowd/container";
-import { joint } from "../crowd/reader";
-import { type BodyPart, type Contact, PARTS, type PatchSet, type Role, type SetKind, type Touch } from "./model";
+import type { Vec3 } from "../crowd/model";
+import { joint, vector } from "../crowd/reader";
+import {
+  type BodyPart,
+  type Contact,
+  PARTS,
+  type PatchSet,
+  type Role,
+  type SetKind,
+  type SetProp,
+  type Touch,
+  type Upright,
+} from "./model";
 
 export const MAGIC = "CQPATCH";
-export const VERSION = 1;
+/** Files of version 1 have no boxes. */
+export const VERSIONS = [1, 2];
 
 /** The set in `buffer`. Throws a FileProblem that names the place. */
 export function readSet(buffer: ArrayBuffer): PatchSet {
-  const file = Container.open(buffer, MAGIC, VERSION);
+  const file = Container.open(buffer, MAGIC, VERSIONS);
   const { header } = file;
   const set: PatchSet = {
     fps: finite(header.fps, "header.fps"),
@@ -43,6 +55,7 @@ function kinds(values: unknown[]): SetKind[] {
       mirrored: v.mirrored === true,
       core: core(v.core, `${place}, core`),
       contacts: list(v.contacts, `${place}, contacts`).map((c, i) => contact(c, `${place}, contact ${i}`)),
+      props: list(v.props ?? [], `${place}, props`).map((p, i) => prop(p, `${place}, prop ${i}`)),
       roles,
       lastFrame: Math.max(0, ...roles.map((r) => r.begin + r.frames - 1)),
     };
@@ -79,6 +92,30 @@ function contact(value: unknown, place: string): Contact {
   };
 }
 
+function prop(value: unknown, place: string): SetProp {
+  const v = object(value, place);
+  const holds = list(v.holds, `${place}, holds`).map((h, k) => {
+    const hold = object(h, `${place}, hold ${k}`);
+    const [role, begin, end] = ["role", "begin", "end"].map((key) => count(hold[key], `${place}, hold ${k}, ${key}`));
+    return { role, begin, end };
+  });
+  if (holds.length === 0) throw new FileProblem(place, "expected somebody to hold it, found nobody");
+  return {
+    name: text(v.name, `${place}, name`),
+    size: vector(v.size, 3, `${place}, size`) as Vec3,
+    grip: vector(v.grip, 2, `${place}, grip`) as unknown as SetProp["grip"],
+    holds,
+    before: upright(v.before, `${place}, before`),
+    after: upright(v.after, `${place}, after`),
+  };
+}
+
+function upright(value: unknown, place: string): Upright | null {
+  if (value === null || value === undefined) return null;
+  const v = object(value, place);
+  return { middle: vector(v.middle, 3, `${place}, middle`) as Vec3, heading: finite(v.heading, `${place}, heading`) };
+}
+
 function touch(value: unknown, place: string): Touch {
   const v = object(value, place);
   if (!PARTS.includes(v.part as BodyPart)) {
@@ -108,6 +145,14 @@ function checkKind(set: PatchSet, kind: SetKind): void {
   for (const [r, own] of kind.roles.entries()) {
     const group = Math.max(own.entry, own.exit);
     if (group >= set.groups.length) throw new FileProblem(`${place}, role ${r}`, `pose group ${group} does not exist`);
+  }
+  for (const { name, holds } of kind.props) {
+    for (const { role, begin, end } of holds) {
+      const own = kind.roles[role];
+      if (own === undefined || begin < own.begin || end < begin || end >= own.begin + own.frames) {
+        throw new FileProblem(`${place}, prop ${name}`, `role ${role} cannot hold it from frame ${begin} to ${end}`);
+      }
+    }
   }
   for (const { a, b } of kind.contacts) {
     const role = Math.max(a.role, b.role);
