@@ -38,8 +38,9 @@ pub struct Made {
     pub annotation: Option<Annotation>,
     /// Indices into `takes` of those.
     pub found_in: Vec<usize>,
-    /// Names of kinds that were found but left out, because they lead where nobody can go on, or nobody comes from.
-    pub left_out: Vec<String>,
+    /// Patches that were found but left out, because they lead where nobody can go on, or nobody comes from: of which take
+    /// (index into `takes`), and their names.
+    pub left_out: Vec<(usize, String)>,
 }
 
 /// What is being done.
@@ -98,7 +99,15 @@ pub fn make_with(path: &Path, options: &MakeOptions, report: &(dyn Fn(Step) -> b
     let compositions: Vec<PathBuf> = own.into_iter().chain(options.compose.iter().cloned()).collect();
     compose::add(&mut set, &compositions, &sources, &options.cut)?;
     let found: BTreeSet<&str> = bare.iter().flat_map(|&i| &takes[i].take.patches).map(|p| p.name.as_str()).collect();
-    let left_out = close(&mut set, |kind| found.contains(kind.name.trim_end_matches(MIRRORED)));
+    let names = close(&mut set, |kind| found.contains(kind.name.trim_end_matches(MIRRORED)));
+    let mut left_out = Vec::new();
+    for &take in &bare {
+        takes[take].take.patches.retain(|p| {
+            let stays = !names.contains(&p.name);
+            left_out.extend((!stays).then(|| (take, p.name.clone())));
+            stays
+        });
+    }
     Ok(Made { set, takes, annotation, found_in: bare, left_out })
 }
 
@@ -167,10 +176,9 @@ impl Made {
         }
         let idle = self.takes[take].take.props.iter().filter(|p| p.held.is_empty());
         notes.extend(idle.map(|p| format!("prop {}: expected somebody who holds it, found nobody", p.name)));
-        let own = self.takes[take].take.patches.iter().filter(|p| self.left_out.contains(&p.name));
-        let left_out = own.map(|p| format!("{} is left out: nothing leads on from it, or up to it", p.name));
-        notes.extend(left_out);
-        if self.takes[take].take.patches.is_empty() {
+        let own = || self.left_out.iter().filter(|l| l.0 == take);
+        notes.extend(own().map(|l| format!("{} is left out: nothing leads on from it, or up to it", l.1)));
+        if self.takes[take].take.patches.is_empty() && own().count() == 0 {
             notes.push(annotation.why_no_piece(k));
         }
         notes
