@@ -41,7 +41,7 @@ export class Boxes {
       return mesh;
     };
     this.meshes = crowd.props.length > 0 ? [make(new BoxGeometry(), BOARD, 0.95), make(tape(), TAPE, 0.6)] : [];
-    this.group.add(...this.meshes);
+    for (const mesh of this.meshes) this.group.add(mesh);
   }
 
   /** Brings all boxes to `secs` and raises them by `lift`; what is not there has no size. */
