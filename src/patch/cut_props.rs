@@ -1,18 +1,31 @@
 //! The boxes of a patch: which of a take's holds fall into it, and where a box rests before and after.
 
+use glam::{Vec2, Vec3};
+
 use super::cut::frame;
-use super::prop::settled;
+use super::prop::{at_palms, settled};
 use super::{Fragment, PatchKind, PatchProp, PropHold};
-use crate::geom::Upright;
-use crate::motion::take::{TakeFile, TakePatch, TakeProp};
+use crate::geom::{Ground, Upright};
+use crate::motion::contacts::palm;
+use crate::motion::joint::{LEFT_HAND, RIGHT_HAND};
+use crate::motion::take::{TakeFile, TakeHold, TakePatch, TakeProp};
+use crate::motion::{BODY_CAPSULES, Motion};
 
 /// Shortest time over which both hold a box that is passed, frames.
-const PASS_FRAMES: u32 = 8;
+pub(super) const PASS_FRAMES: u32 = 8;
+/// A box is taken up at most this far from where it was put down, metres.
+const ASTRAY: f32 = 0.1;
+/// No hand that holds a box is farther from its face for most of the time, metres: it would not be led there.
+const FARTHEST: f32 = 0.15;
+/// A sitter's pelvis is this near to the top of the box, metres.
+const SEAT: f32 = 0.02;
+/// From the hips' joint down to where they touch the seat, metres.
+const PELVIS: f32 = BODY_CAPSULES[0].radius;
 
-/// The boxes that somebody holds in a patch whose clock begins at frame `start` of the take.
+/// The boxes that somebody holds or sits on in a patch whose clock begins at frame `start` of the take.
 ///
 /// # Errors
-/// Somebody takes a box from or hands it to a person who is not there, or puts it down and it is taken up again.
+/// Somebody takes a box from or hands it to a person who is not there, or takes it up where nobody put it down.
 pub(super) fn of_patch(
     take: &TakeFile,
     patch: &TakePatch,
@@ -42,10 +55,13 @@ struct Held {
 
 impl Cutter<'_> {
     fn prop(&self, prop: &TakeProp) -> Result<Option<PatchProp>, String> {
-        let held: Vec<Held> = (0..prop.held.len()).filter_map(|k| self.held(prop, k)).collect();
-        let (Some(first), Some(last)) = (held.first(), held.last()) else { return Ok(None) };
+        let held: Vec<Held> = (0..prop.held.len()).filter_map(|k| self.held(&prop.held, k)).collect();
+        let sat = (0..prop.sat.len()).filter_map(|k| Some(self.held(&prop.sat, k)?.hold)).collect();
+        let (name, size, grip) = (prop.name.clone(), prop.size, prop.grip);
+        let cut = PatchProp { name, size, grip, holds: vec![], sat, before: None, after: None };
+        let (Some(first), Some(last)) = (held.first(), held.last()) else { return self.standing(prop, cut) };
         for pair in held.windows(2) {
-            self.check_pass(prop, &pair[0], &pair[1])?;
+            self.check_pass(prop, &cut, &pair[0], &pair[1])?;
         }
         let passed = |k: usize| prop.held[k + 1].begin <= prop.held[k].end;
         if first.whole[0] && first.index > 0 && passed(first.index - 1) {
@@ -56,18 +72,30 @@ impl Cutter<'_> {
         }
         let mut holds: Vec<PropHold> = held.iter().map(|h| h.hold).collect();
         self.lengthen_passes(&mut holds);
-        let mut cut =
-            PatchProp { name: prop.name.clone(), size: prop.size, grip: prop.grip, holds, before: None, after: None };
-        (cut.before, cut.after) = (
-            first.whole[0].then(|| self.rest(&cut, cut.holds[0].begin)),
-            last.whole[1].then(|| self.rest(&cut, cut.holds[cut.holds.len() - 1].end)),
-        );
-        Ok(Some(cut))
+        let (begin, end) = (holds[0], holds[holds.len() - 1]);
+        let before = first.whole[0].then(|| self.rest(&cut, begin.role, begin.begin));
+        let after = last.whole[1].then(|| self.rest(&cut, end.role, end.end));
+        Ok(Some(PatchProp { holds, before, after, ..cut }))
+    }
+
+    /// A box that nobody of the patch moves: it stands under who sits on it.
+    fn standing(&self, prop: &TakeProp, cut: PatchProp) -> Result<Option<PatchProp>, String> {
+        let Some(seat) = cut.sat.first() else { return Ok(None) };
+        let moved = |h: &TakeHold| self.patch.roles.iter().any(|r| r.begin < h.end && h.begin < r.end);
+        if let Some(hold) = prop.held.iter().find(|h| moved(h)) {
+            return Err(format!(
+                "person {} holds it meanwhile: expected that person in the patch as well",
+                hold.person
+            ));
+        }
+        let motion = &self.fragments[seat.role as usize].motion;
+        let at = under(motion.path.at((seat.begin - self.span(seat.role).0) as usize), prop);
+        Ok(Some(PatchProp { before: Some(at), after: Some(at), ..cut }))
     }
 
     /// The part of a hold in the patch; `None` if it has none.
-    fn held(&self, prop: &TakeProp, index: usize) -> Option<Held> {
-        let hold = &prop.held[index];
+    fn held(&self, holds: &[TakeHold], index: usize) -> Option<Held> {
+        let hold = &holds[index];
         let role = self.patch.roles.iter().position(|r| r.person == hold.person)?;
         let (first, last) = self.span(role as u32);
         let (begin, end) = (frame(hold.begin) as u32, frame(hold.end) as u32);
@@ -82,14 +110,17 @@ impl Cutter<'_> {
         (f.begin, f.begin + f.motion.len() as u32 - 1)
     }
 
-    fn check_pass(&self, prop: &TakeProp, a: &Held, b: &Held) -> Result<(), String> {
+    fn check_pass(&self, prop: &TakeProp, cut: &PatchProp, a: &Held, b: &Held) -> Result<(), String> {
         if b.index != a.index + 1 {
             return Err(stranger(prop, a.index, a.index + 1, "hands it to"));
         }
         let (giver, taker) = (prop.held[a.index].person, prop.held[b.index].person);
         if prop.held[b.index].begin > prop.held[a.index].end {
-            let advice = "cut one patch for putting it down and another for taking it up";
-            return Err(format!("person {giver} puts it down before person {taker} takes it up: {advice}"));
+            let (put, taken) = (self.rest(cut, a.hold.role, a.hold.end), self.rest(cut, b.hold.role, b.hold.begin));
+            let apart = put.middle.distance(taken.middle);
+            let found = format!("found that place {apart:.2} m away");
+            let expected = format!("expected person {taker} to take it up where person {giver} put it down");
+            return if apart <= ASTRAY { Ok(()) } else { Err(format!("{expected}, {found}")) };
         }
         if !(a.whole[1] && b.whole[0]) {
             let expected = "expected both to be in the patch while it is passed";
@@ -110,10 +141,54 @@ impl Cutter<'_> {
     }
 
     /// Where the box is at a frame of the clock at which it is taken up or put down.
-    fn rest(&self, prop: &PatchProp, clock: u32) -> Upright {
+    fn rest(&self, prop: &PatchProp, role: u32, clock: u32) -> Upright {
         let kind = PatchKind { fragments: self.fragments.to_vec(), ..PatchKind::default() };
-        settled(prop.place(&kind, clock).expect("held at that frame"), prop.size[1])
+        settled(prop.in_hands(&kind, role, clock), prop.size[1])
     }
+}
+
+/// The place of a box on the ground under a sitter.
+fn under(sitter: Ground, prop: &TakeProp) -> Upright {
+    let at = sitter.apply(Vec2::new(0.0, prop.seat));
+    Upright { middle: Vec3::new(at.x, 0.5 * prop.size[1], at.y), heading: sitter.heading }
+}
+
+/// Why a take's prop cannot be where the take says: hands that are not on it, or a sitter who is not. `None` if all is
+/// well. O(frames held).
+pub(super) fn misfit(prop: &TakeProp, motions: &[Motion]) -> Option<String> {
+    let frames = |h: &TakeHold| frame(h.begin)..(frame(h.end) + 1).min(motions[h.person].len());
+    let mut globals = Vec::new();
+    for hold in &prop.held {
+        let mut away = |f: usize| {
+            motions[hold.person].globals(f, &mut globals);
+            off_faces([palm(&globals, LEFT_HAND), palm(&globals, RIGHT_HAND)], prop)
+        };
+        let away: Vec<f32> = frames(hold).map(&mut away).collect();
+        let far = away.iter().filter(|&&d| d > FARTHEST).count();
+        if 2 * far > away.len() {
+            let nearest = away.iter().copied().fold(f32::INFINITY, f32::min);
+            let when = format!("{:.2} s to {:.2} s", hold.begin, hold.end);
+            let expected = format!("expected hands of person {} on both its faces from {when}", hold.person);
+            return Some(format!("{expected}, found one {nearest:.2} m from its face at best"));
+        }
+    }
+    prop.sat.iter().filter(|s| frame(s.begin) < motions[s.person].len()).find_map(|seat| {
+        let over = |f: usize| motions[seat.person].heights[f] - PELVIS - prop.size[1];
+        let worst = frames(seat).map(over).max_by(|a, b| a.abs().total_cmp(&b.abs())).filter(|o| o.abs() > SEAT)?;
+        let expected = format!("expected person {} to sit on its top, {:.2} m high", seat.person, prop.size[1]);
+        Some(format!("{expected}, found one who sits {:.2} m high", prop.size[1] + worst))
+    })
+}
+
+/// How far the worse of two palms is from the face that it should be on, metres.
+fn off_faces([left, right]: [Vec3; 2], prop: &TakeProp) -> f32 {
+    let place = at_palms(left, right, prop.grip);
+    let half = 0.5 * Vec3::from_array(prop.size);
+    let off = |palm: Vec3| {
+        let at = place.seen_from(palm);
+        at.distance(Vec3::new(half.x.copysign(at.x), at.y.clamp(-half.y, half.y), at.z.clamp(-half.z, half.z)))
+    };
+    off(left).max(off(right))
 }
 
 fn stranger(prop: &TakeProp, index: usize, other: usize, what: &str) -> String {

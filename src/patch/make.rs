@@ -174,7 +174,7 @@ impl Made {
             let event = &annotation.found[k].events[lost.event];
             notes.push(format!("no patch of the event in frames {} to {}: {}", event.begin, event.end, lost.reason));
         }
-        let idle = self.takes[take].take.props.iter().filter(|p| p.held.is_empty());
+        let idle = self.takes[take].take.props.iter().filter(|p| p.held.is_empty() && p.sat.is_empty());
         notes.extend(idle.map(|p| format!("prop {}: expected somebody who holds it, found nobody", p.name)));
         let own = || self.left_out.iter().filter(|l| l.0 == take);
         notes.extend(own().map(|l| format!("{} is left out: nothing leads on from it, or up to it", l.1)));
