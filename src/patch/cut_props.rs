@@ -1,5 +1,7 @@
 //! The boxes of a patch: which of a take's holds fall into it, and where a box rests before and after.
 
+use std::ops::Range;
+
 use glam::{Vec2, Vec3};
 
 use super::cut::frame;
@@ -71,7 +73,7 @@ impl Cutter<'_> {
             return Err(stranger(prop, last.index, last.index + 1, "hands it to"));
         }
         let mut holds: Vec<PropHold> = held.iter().map(|h| h.hold).collect();
-        self.lengthen_passes(&mut holds);
+        lengthen(&mut holds, |role| self.span(role));
         let (begin, end) = (holds[0], holds[holds.len() - 1]);
         let before = first.whole[0].then(|| self.rest(&cut, begin.role, begin.begin));
         let after = last.whole[1].then(|| self.rest(&cut, end.role, end.end));
@@ -89,7 +91,7 @@ impl Cutter<'_> {
             ));
         }
         let motion = &self.fragments[seat.role as usize].motion;
-        let at = under(motion.path.at((seat.begin - self.span(seat.role).0) as usize), prop);
+        let at = under(motion.path.at((seat.begin - self.span(seat.role).0) as usize), prop.seat, prop.size[1]);
         Ok(Some(PatchProp { before: Some(at), after: Some(at), ..cut }))
     }
 
@@ -129,17 +131,6 @@ impl Cutter<'_> {
         Ok(())
     }
 
-    /// Gives passes that are annotated as a moment the time that hands need.
-    fn lengthen_passes(&self, holds: &mut [PropHold]) {
-        for k in 1..holds.len() {
-            let (from, to) = (holds[k].begin, holds[k - 1].end);
-            let short = PASS_FRAMES.saturating_sub(to.saturating_sub(from));
-            let (giver, taker) = (self.span(holds[k - 1].role), self.span(holds[k].role));
-            holds[k].begin = from.saturating_sub(short.div_ceil(2)).max(taker.0).max(holds[k - 1].begin + 1);
-            holds[k - 1].end = (to + short.div_ceil(2)).min(giver.1).min(holds[k].end - 1);
-        }
-    }
-
     /// Where the box is at a frame of the clock at which it is taken up or put down.
     fn rest(&self, prop: &PatchProp, role: u32, clock: u32) -> Upright {
         let kind = PatchKind { fragments: self.fragments.to_vec(), ..PatchKind::default() };
@@ -147,43 +138,79 @@ impl Cutter<'_> {
     }
 }
 
-/// The place of a box on the ground under a sitter.
-fn under(sitter: Ground, prop: &TakeProp) -> Upright {
-    let at = sitter.apply(Vec2::new(0.0, prop.seat));
-    Upright { middle: Vec3::new(at.x, 0.5 * prop.size[1], at.y), heading: sitter.heading }
+/// Gives passes that are annotated as a moment the time that hands need; `span` says when a role is there.
+pub(super) fn lengthen(holds: &mut [PropHold], span: impl Fn(u32) -> (u32, u32)) {
+    for k in 1..holds.len() {
+        let (from, to) = (holds[k].begin, holds[k - 1].end);
+        if to < from {
+            continue;
+        }
+        let short = PASS_FRAMES.saturating_sub(to - from);
+        let (giver, taker) = (span(holds[k - 1].role), span(holds[k].role));
+        holds[k].begin = from.saturating_sub(short.div_ceil(2)).max(taker.0).max(holds[k - 1].begin + 1);
+        holds[k - 1].end = (to + short.div_ceil(2)).min(giver.1).min(holds[k].end - 1);
+    }
+}
+
+/// The place of a box of a height on the ground under a sitter, its middle `ahead` of the hips.
+pub(super) fn under(sitter: Ground, ahead: f32, height: f32) -> Upright {
+    let at = sitter.apply(Vec2::new(0.0, ahead));
+    Upright { middle: Vec3::new(at.x, 0.5 * height, at.y), heading: sitter.heading }
 }
 
 /// Why a take's prop cannot be where the take says: hands that are not on it, or a sitter who is not. `None` if all is
 /// well. O(frames held).
 pub(super) fn misfit(prop: &TakeProp, motions: &[Motion]) -> Option<String> {
     let frames = |h: &TakeHold| frame(h.begin)..(frame(h.end) + 1).min(motions[h.person].len());
+    let told = |h: &TakeHold, problem| format!("person {}, {:.2} s to {:.2} s: {problem}", h.person, h.begin, h.end);
+    let hands = |h: &TakeHold| Some(told(h, hands_off(&motions[h.person], frames(h), prop.size, prop.grip)?));
+    let hips = |s: &TakeHold| Some(told(s, hips_off(&motions[s.person], frames(s), prop.size[1])?));
+    prop.held.iter().find_map(hands).or_else(|| prop.sat.iter().find_map(hips))
+}
+
+/// The same of a patch's prop, and whose hands or hips they are.
+pub(super) fn far_from(prop: &PatchProp, kind: &PatchKind) -> Option<(u32, String)> {
+    let shown = |h: &PropHold| {
+        let fragment = &kind.fragments[h.role as usize];
+        let frames = (h.begin - fragment.begin) as usize..(h.end + 1 - fragment.begin) as usize;
+        (&fragment.motion, frames)
+    };
+    let hands = |h: &PropHold| {
+        let (motion, frames) = shown(h);
+        Some((h.role, hands_off(motion, frames, prop.size, prop.grip)?))
+    };
+    let hips = |s: &PropHold| {
+        let (motion, frames) = shown(s);
+        Some((s.role, hips_off(motion, frames, prop.size[1])?))
+    };
+    prop.holds.iter().find_map(hands).or_else(|| prop.sat.iter().find_map(hips))
+}
+
+/// What is wrong with hands that should hold a box: for most of the time they are too far from its faces to be led there.
+fn hands_off(motion: &Motion, frames: Range<usize>, size: [f32; 3], grip: [f32; 2]) -> Option<String> {
     let mut globals = Vec::new();
-    for hold in &prop.held {
-        let mut away = |f: usize| {
-            motions[hold.person].globals(f, &mut globals);
-            off_faces([palm(&globals, LEFT_HAND), palm(&globals, RIGHT_HAND)], prop)
-        };
-        let away: Vec<f32> = frames(hold).map(&mut away).collect();
-        let far = away.iter().filter(|&&d| d > FARTHEST).count();
-        if 2 * far > away.len() {
-            let nearest = away.iter().copied().fold(f32::INFINITY, f32::min);
-            let when = format!("{:.2} s to {:.2} s", hold.begin, hold.end);
-            let expected = format!("expected hands of person {} on both its faces from {when}", hold.person);
-            return Some(format!("{expected}, found one {nearest:.2} m from its face at best"));
-        }
-    }
-    prop.sat.iter().filter(|s| frame(s.begin) < motions[s.person].len()).find_map(|seat| {
-        let over = |f: usize| motions[seat.person].heights[f] - PELVIS - prop.size[1];
-        let worst = frames(seat).map(over).max_by(|a, b| a.abs().total_cmp(&b.abs())).filter(|o| o.abs() > SEAT)?;
-        let expected = format!("expected person {} to sit on its top, {:.2} m high", seat.person, prop.size[1]);
-        Some(format!("{expected}, found one who sits {:.2} m high", prop.size[1] + worst))
-    })
+    let mut away = |f: usize| {
+        motion.globals(f, &mut globals);
+        off_faces([palm(&globals, LEFT_HAND), palm(&globals, RIGHT_HAND)], size, grip)
+    };
+    let away: Vec<f32> = frames.map(&mut away).collect();
+    let far = away.iter().filter(|&&d| d > FARTHEST).count();
+    let nearest = away.iter().copied().fold(f32::INFINITY, f32::min);
+    let expected = format!("expected hands on both faces of a box {:.2} m wide", size[0]);
+    (2 * far > away.len()).then(|| format!("{expected}, found one {nearest:.2} m off at best"))
+}
+
+/// What is wrong with hips that should be on a box of a height.
+fn hips_off(motion: &Motion, frames: Range<usize>, height: f32) -> Option<String> {
+    let over = frames.map(|f| motion.heights[f] - PELVIS - height);
+    let worst = over.max_by(|a, b| a.abs().total_cmp(&b.abs())).filter(|o| o.abs() > SEAT)?;
+    Some(format!("expected a seat {height:.2} m high, as the box is; found one {:.2} m high", height + worst))
 }
 
 /// How far the worse of two palms is from the face that it should be on, metres.
-fn off_faces([left, right]: [Vec3; 2], prop: &TakeProp) -> f32 {
-    let place = at_palms(left, right, prop.grip);
-    let half = 0.5 * Vec3::from_array(prop.size);
+fn off_faces([left, right]: [Vec3; 2], size: [f32; 3], grip: [f32; 2]) -> f32 {
+    let place = at_palms(left, right, grip);
+    let half = 0.5 * Vec3::from_array(size);
     let off = |palm: Vec3| {
         let at = place.seen_from(palm);
         at.distance(Vec3::new(half.x.copysign(at.x), at.y.clamp(-half.y, half.y), at.z.clamp(-half.z, half.z)))

@@ -102,8 +102,8 @@ fn tie_shoe() -> Scene {
     a.shift(Vec2::new(0.0, -0.13), 0.0, 0.6);
     a.step_from(Right, origin, Ground::new(Vec2::new(-0.02, -0.44), 0.0), 15);
     let kneel = [-0.2, 0.72, 1.75, 2.60];
-    a.pose(kneel, &[(HipsUp, -0.47), (PelvisPitch, 0.22), (SpinePitch, 0.55), (KneeOutLeft, 0.12), (HeadPitch, 0.05)]);
-    a.pulse(HeelUpRight, [0.0, 0.72, 1.55, 2.15], 0.84);
+    a.pose(kneel, &[(HipsUp, -0.45), (PelvisPitch, 0.22), (SpinePitch, 0.55), (KneeOutLeft, 0.12), (HeadPitch, 0.05)]);
+    a.pulse(HeelUpRight, [0.0, 0.72, 1.55, 2.15], 1.0);
     for (side, s) in [(Left, 1.0), (Right, -1.0)] {
         let at = |x: f32, y: f32| {
             grip(Relative::World, [0.105 + s * x, y, 0.10], [s * -0.5, -0.75, 0.45], [s * -0.9, -0.3, 0.0])

@@ -1,9 +1,9 @@
-//! People sit down on a crate behind them and get up again: alone, coming and going, or facing each other.
+//! People sit down on a crate behind them and get up again: alone, to walk off, or opposite each other.
 
 use glam::Vec3;
 
 use super::actions::grip;
-use super::meet::{facing, walk_up};
+use super::meet::facing;
 use super::solo;
 use super::talk::{gesticulate, nod};
 use crate::geom::Ground;
@@ -25,7 +25,7 @@ const DOWN: f32 = 1.35;
 const UP: f32 = 1.45;
 
 pub(super) fn scenes() -> Vec<Scene> {
-    vec![sit("sit", 2.0, rest), sit("sit-long", 4.0, look_about), come_and_sit(), sit_and_talk()]
+    vec![sit("sit", 1.2, rest), sit("sit-look", 2.9, look_about), sit_and_go(), sit_and_talk()]
 }
 
 /// Sits down from the cursor on, stays for some seconds, gets up; when seated and when standing again.
@@ -62,12 +62,12 @@ fn rest(a: &mut Actor, from: f32, _: f32) {
 }
 
 fn look_about(a: &mut Actor, from: f32, to: f32) {
-    for (k, side) in [(0.0, 1.0), (1.6, -1.0)] {
-        let times = [from + k, from + k + 0.5, from + k + 1.0, from + k + 1.5];
+    for (k, side) in [(0.0, 1.0), (1.2, -1.0)] {
+        let times = [from + k, from + k + 0.5, from + k + 0.8, from + k + 1.3];
         a.look(times, Sight::Beside(Vec3::new(2.6 * side, 1.1, 2.0)));
         a.pose(times, &[(SpineYaw, 0.14 * side), (HeadRoll, -0.03 * side)]);
     }
-    a.pose([to - 1.0, to - 0.7, to - 0.6, to - 0.2], &[(SpinePitch, 0.10), (HeadPitch, 0.08)]);
+    a.pose([to - 1.0, to - 0.6, to - 0.5, to - 0.1], &[(SpinePitch, 0.10), (HeadPitch, 0.08)]);
 }
 
 fn sit(name: &str, seconds: f32, pastime: Pastime) -> Scene {
@@ -84,22 +84,17 @@ fn sit(name: &str, seconds: f32, pastime: Pastime) -> Scene {
     scene
 }
 
-/// Walks up to the crate, turns around, sits down, gets up and walks off.
-fn come_and_sit() -> Scene {
+/// Sits down, gets up and walks off to the side.
+fn sit_and_go() -> Scene {
     let mut a = Actor::standing();
-    a.stand(8);
-    let from = walk_up(&mut a, (NORMAL, 1), 0);
-    a.unmark();
-    a.wait(3);
-    a.pivot(180f32.to_radians(), 5, 14);
-    a.unmark();
-    let t = a.t();
-    let [down, up, end] = seat(&mut a, 2.4);
-    a.look([down, down + 0.5, down + 1.5, down + 2.0], Sight::Beside(Vec3::new(-1.5, 1.2, 2.5)));
+    a.stand(20);
+    let (from, t) = (a.now, a.t());
+    let [down, up, end] = seat(&mut a, 1.5);
+    a.look([down, down + 0.5, up + 0.5, end], Sight::Beside(Vec3::new(-1.8, 1.3, 2.0)));
     a.wait((end * 30.0).ceil() as i32);
-    a.start(Right, NORMAL, -60f32.to_radians());
+    a.start(Right, NORMAL, -70f32.to_radians());
     let to = a.now;
-    let mut scene = solo("sit-walk", a, &[("sit-walk", &["action", "walk", "sit"], from, to)]);
+    let mut scene = solo("sit-and-go", a, &[("sit-and-go", &["action", "start", "sit"], from, to)]);
     scene.sit(0, t + down, t + up);
     scene
 }
@@ -118,11 +113,10 @@ fn sit_and_talk() -> Scene {
     for (i, a) in actors.iter_mut().enumerate() {
         let late = 6 * i as i32;
         a.wait(late);
-        let [down, up, end] = seat(a, 4.0);
+        let [down, up, end] = seat(a, 2.7);
         a.look([0.0, 0.4, end - 0.4, end], Sight::Person(1 - i));
-        let turn = down + [0.4, 2.0][i];
-        gesticulate(a, Right, turn, 2);
-        nod(a, down + [2.6, 0.9][i]);
+        gesticulate(a, Right, down + [0.1, 1.0][i], 1);
+        nod(a, down + [1.7, 0.3][i]);
         seats.push([t + late as f32 / 30.0 + down, t + late as f32 / 30.0 + up]);
         a.stand((end * 30.0).ceil() as i32 + 3);
         roles.push((i, from, a.now));

