@@ -364,7 +364,7 @@ fn compose_files_beside_others_join_the_set() {
     let again = PatchSet::from_bytes(&set.to_bytes()).unwrap();
     assert_eq!(again, set, "a composed kind comes back from a file as it is");
     let twice = add(&mut set, &[folder], &SOURCES, &CutOptions::default()).unwrap_err().to_string();
-    assert!(twice.contains("meet-and-bow") && twice.contains("a new name"), "{twice}");
+    assert!(twice.contains("carry-and-pass") && twice.contains("a new name"), "{twice}");
     let missing = add(&mut set, &["nowhere.compose.toml".into()], &SOURCES, &CutOptions::default()).unwrap_err();
     assert!(missing.to_string().contains("nowhere.compose.toml"), "{missing}");
 }

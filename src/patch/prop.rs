@@ -211,6 +211,15 @@ impl PatchSet {
         for kind in &self.kinds {
             for (k, prop) in kind.props.iter().enumerate() {
                 problems.extend(prop.problems(kind).into_iter().map(|p| (kind.name.clone(), p)));
+                for end in [0, 1] {
+                    let anchor = |p: &PatchProp| p.anchors()[end].filter(|_| [p.before, p.after][end].is_some());
+                    let role = |p: &PatchProp| anchor(p).map(|a| a.0);
+                    if let Some(other) = kind.props[..k].iter().find(|o| role(o).is_some() && role(o) == role(prop)) {
+                        let when = ["before", "after"][end];
+                        let problem = format!("{} and {} both lie there {when} one role", other.name, prop.name);
+                        problems.push((kind.name.clone(), problem));
+                    }
+                }
                 for other in kind.props[..k].iter().filter(|other| in_same_hands(prop, other)) {
                     problems.push((kind.name.clone(), format!("{} and {} in the same hands", other.name, prop.name)));
                 }

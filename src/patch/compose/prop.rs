@@ -249,13 +249,6 @@ fn of_kind_one(story: &Composition, found: &Found, kind: &PatchKind, solved: &So
         let before = first.1.whole[0].then(|| rest(a.role, a.begin));
         let after = last.1.whole[1].then(|| rest(b.role, b.end));
         (prop.before, prop.after) = (before, after);
-        for (rest, hold, verb) in [(before, a, "take it up"), (after, b, "put it down")] {
-            if let Some(rest) = rest.filter(|r| r.middle.y > 0.5 * size[1]) {
-                let name = &story.roles[hold.role as usize].name;
-                let found = format!("found it {:.2} m above", rest.middle.y - 0.5 * size[1]);
-                return Err(fail(format!("expected {name} to {verb} on the ground, {found}")));
-            }
-        }
         if let Some(apart) = apart(&prop, kind) {
             return Err(fail(format!(
                 "expected it where both have it when it changes hands, found {apart:.2} m between"
@@ -264,6 +257,14 @@ fn of_kind_one(story: &Composition, found: &Found, kind: &PatchKind, solved: &So
     }
     if let Some((role, problem)) = far_from(&prop, kind) {
         return Err(fail(format!("{}: {problem}", story.roles[role as usize].name)));
+    }
+    let ends = [(prop.before, prop.holds.first(), "take it up"), (prop.after, prop.holds.last(), "put it down")];
+    for (rest, hold, verb) in ends {
+        if let (Some(rest), Some(hold)) = (rest.filter(|r| r.middle.y > 0.5 * size[1]), hold) {
+            let name = &story.roles[hold.role as usize].name;
+            let found = format!("found it {:.2} m above", rest.middle.y - 0.5 * size[1]);
+            return Err(fail(format!("expected {name} to {verb} on the ground, {found}")));
+        }
     }
     Ok(prop)
 }

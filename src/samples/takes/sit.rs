@@ -49,7 +49,7 @@ fn seat(a: &mut Actor, seconds: f32) -> [f32; 3] {
 fn hands_on_knees(a: &mut Actor, times: [f32; 4]) {
     for (side, s) in [(Left, 1.0), (Right, -1.0)] {
         // Thighs are level: the palms rest on them above the knees.
-        let palm = grip(Relative::Path, [s * 0.15, 0.615, -0.08], [s * -0.15, -0.12, 1.0], [0.0, -1.0, -0.1]);
+        let palm = grip(Relative::Path, [s * 0.15, 0.597, -0.08], [s * -0.15, -0.08, 1.0], [0.0, -1.0, -0.1]);
         a.reach(side, times, vec![(0.0, palm)]);
     }
 }
