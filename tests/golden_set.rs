@@ -49,6 +49,7 @@ fn taken_up_and_put_down() -> PatchProp {
         size: [0.3, 0.25, 0.2],
         grip: [0.05, 0.1],
         holds: vec![PropHold { role: 0, begin: 2, end: 4 }],
+        sat: vec![],
         before: Some(rest(0.5)),
         after: Some(rest(1.5)),
     }
@@ -60,6 +61,7 @@ fn passed() -> PatchProp {
         size: [0.4, 0.3, 0.3],
         grip: [-0.02, 0.08],
         holds: vec![PropHold { role: 1, begin: 0, end: 7 }, PropHold { role: 0, begin: 5, end: 10 }],
+        sat: vec![],
         before: None,
         after: None,
     }
