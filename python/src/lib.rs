@@ -9,6 +9,7 @@ mod check;
 mod connectivity;
 mod error;
 mod export;
+mod measures;
 mod motion;
 mod numbers;
 mod patch;
@@ -30,6 +31,8 @@ mod _core {
     use super::error::CrowdquiltError;
     #[pymodule_export]
     use super::export::{export_bvh, export_glb};
+    #[pymodule_export]
+    use super::measures::{Measures, kind_measures};
     #[pymodule_export]
     use super::motion::{Clip, check_take, import_presets, load_clip, take_distances};
     #[pymodule_export]

@@ -50,7 +50,7 @@ fn words_are_what_the_samples_were_scripted_to_do() {
     let expected: BTreeMap<&str, &[&str]> = [
         ("idle-1.5", &["stand"] as &[&str]),
         ("wave", &["stand"]),
-        ("walk-normal-cycle", &["walk"]),
+        ("walk-1.15-cycle", &["walk"]),
         ("step-left", &["step"]),
         ("pivot-90", &["stand", "turn"]),
         ("sit", &["step", "low"]),
