@@ -147,7 +147,9 @@ fn the_studios_golden_set_is_what_rust_writes() {
     let words = |v: &Value| v["measures"].as_array().unwrap().iter().map(|m| m["words"].clone()).collect::<Vec<_>>();
     let figures = |v: &Value| -> Vec<f64> {
         let kinds = v["measures"].as_array().unwrap().iter();
-        kinds.flat_map(|m| ["seconds", "speed", "fastest", "radius", "turn_deg"].map(|f| m[f].as_f64().unwrap())).collect()
+        kinds
+            .flat_map(|m| ["seconds", "speed", "fastest", "radius", "turn_deg"].map(|f| m[f].as_f64().unwrap()))
+            .collect()
     };
     for places in [positions(&filed), positions(&set)] {
         assert_eq!(words(&places), words(&told));

@@ -16,6 +16,7 @@ mod patch;
 mod progress;
 mod refine;
 mod samples;
+mod signals;
 mod stage;
 mod tiling;
 
@@ -41,6 +42,8 @@ mod _core {
     use super::refine::refine_crowd;
     #[pymodule_export]
     use super::samples::write_samples;
+    #[pymodule_export]
+    use super::signals::{PairSignals, TakeSignals};
     #[pymodule_export]
     use super::stage::{Crowd, Fragment, Prop};
     #[pymodule_export]

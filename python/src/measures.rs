@@ -25,7 +25,13 @@ pub struct Measures {
 #[pymethods]
 impl Measures {
     fn __repr__(&self) -> String {
-        format!("Measures({}, {:.2} s, {:.2} m/s, radius {:.2} m)", self.words.join(" "), self.seconds, self.speed, self.radius)
+        format!(
+            "Measures({}, {:.2} s, {:.2} m/s, radius {:.2} m)",
+            self.words.join(" "),
+            self.seconds,
+            self.speed,
+            self.radius
+        )
     }
 }
 

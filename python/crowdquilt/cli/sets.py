@@ -12,11 +12,9 @@ from rich.markup import escape
 from rich.table import Table
 
 from crowdquilt import patch
-from crowdquilt._core import Connectivity, CrowdquiltError, Measures, PatchSet
-from crowdquilt.cli.app import app, console, example
+from crowdquilt._core import Connectivity, Measures, PatchSet
+from crowdquilt.cli.app import app, console, example, expect_picture
 from crowdquilt.cli.tables import kind_table
-
-PICTURES = (".png", ".svg", ".pdf")
 
 
 @app.command(epilog=example("kinds people.patches", "kinds people.patches --sheet sheet.png --groups groups.png"))
@@ -31,10 +29,7 @@ def kinds(
 
     A set is closed if people can go on from everywhere for ever; what would close it is said where it is not.
     """
-    for picture in (sheet, groups):
-        if picture is not None and picture.suffix not in PICTURES:
-            suffix = picture.suffix or "no suffix"
-            raise CrowdquiltError(f"{picture}: expected a picture ({', '.join(PICTURES)}), found {suffix}")
+    expect_picture(sheet, groups)
     made = PatchSet.load(patches)
     found = patch.connectivity(made)
     if as_json:

@@ -80,7 +80,10 @@ fn around(p: DVec2, q: DVec2, r: DVec2) -> (DVec2, f64) {
         let (s, t) = pairs.into_iter().max_by(|x, y| x.0.distance(x.1).total_cmp(&y.0.distance(y.1))).expect("three");
         return (s.midpoint(t), 0.5 * s.distance(t));
     }
-    let to_middle = DVec2::new(b.y * a.length_squared() - a.y * b.length_squared(), a.x * b.length_squared() - b.x * a.length_squared()) / twice;
+    let to_middle = DVec2::new(
+        b.y * a.length_squared() - a.y * b.length_squared(),
+        a.x * b.length_squared() - b.x * a.length_squared(),
+    ) / twice;
     (p + to_middle, to_middle.length())
 }
 

@@ -108,7 +108,8 @@ fn place_direction_and_mirror_do_not_matter() {
         moved.props.iter_mut().for_each(|p| (p.before, p.after) = (None, None));
         let mut bare = kind.clone();
         bare.props.iter_mut().for_each(|p| (p.before, p.after) = (None, None));
-        let (here, there, mirror) = (bare.measures(), moved.measures(), mirrored(kind, &mut SAMPLES.groups.clone()).measures());
+        let (here, there, mirror) =
+            (bare.measures(), moved.measures(), mirrored(kind, &mut SAMPLES.groups.clone()).measures());
         assert!(close(here.radius, there.radius) && close(before.radius, mirror.radius), "{}", kind.name);
         assert!(close(before.speed, there.speed) && close(before.fastest, mirror.fastest), "{}", kind.name);
         assert!(close(before.turn_deg, there.turn_deg) && close(before.turn_deg, -mirror.turn_deg), "{}", kind.name);
