@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any
@@ -76,7 +77,7 @@ def label_table(patches: PatchSet) -> Table:
     """Kinds by their first label: how many of each number of people, and what is measured of them."""
     people = sorted({kind.people for kind in patches.kinds})
     table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0), show_footer=True, footer_style="dim")
-    table.add_column("label", footer=f"{len(patches)} kinds")
+    table.add_column("label", footer=f"{len(patches)} kinds", no_wrap=True)
     for n in people:
         total = sum(kind.people == n for kind in patches.kinds)
         table.add_column("alone" if n == 1 else f"{n} people", justify="right", footer=str(total))
@@ -87,10 +88,15 @@ def label_table(patches: PatchSet) -> Table:
         counts = (sum(m.people == n for m in found) for n in people)
         turn = f"{max(abs(m.turn_deg) for m in found):.0f}°"
         ranges = (both_ends(m.seconds for m in found), both_ends(m.speed for m in found), turn)
-        words = dict.fromkeys(word for m in found for word in m.words)
         radius = both_ends(m.radius for m in found)
-        table.add_row(escape(label), *(str(n or "") for n in counts), *ranges, radius, " ".join(words))
+        table.add_row(escape(label), *(str(n or "") for n in counts), *ranges, radius, " ".join(common_words(found)))
     return table
+
+
+def common_words(found: list[Measures]) -> list[str]:
+    """The words that hold for at least half of the kinds, the commonest first."""
+    counts = Counter(word for m in found for word in m.words)
+    return [word for word, count in counts.most_common() if 2 * count >= len(found)]
 
 
 def both_ends(values: Iterable[float]) -> str:

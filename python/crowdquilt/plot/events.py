@@ -29,8 +29,8 @@ def events(made: Made, path: str | Path | None = None, dpi: int = 150) -> Figure
     takes = made.signals()
     shared = [take for take in takes if take.pairs]
     rows = min(len(shared), ROWS)
-    foot = 0.75 + ROW * max(rows, 2)
-    page = style.new_figure(11.0, 7.3 + foot)
+    foot = 0.7 + ROW * max(rows, 2)
+    page = style.new_figure(11.0, 6.35 + foot)
     tall = page.get_figheight()
     counts = {kind: sum(sign[0] == kind for take in takes for sign in take.signs) for kind in KINDS}
     told = ", ".join(f"{count} × {kind}" for kind, count in counts.items())
@@ -38,7 +38,7 @@ def events(made: Made, path: str | Path | None = None, dpi: int = 150) -> Figure
     style.heading(page, "What makes an event", looked)
 
     def place(column: int, row: int) -> Axes:
-        axes = page.add_axes((0.07 + 0.49 * column, (foot + 0.55 + 3.1 * (1 - row)) / tall, 0.41, 2.05 / tall))
+        axes = page.add_axes((0.07 + 0.49 * column, (foot + 0.5 + 2.6 * (1 - row)) / tall, 0.42, 2.0 / tall))
         dress(axes)
         return axes
 
@@ -47,7 +47,7 @@ def events(made: Made, path: str | Path | None = None, dpi: int = 150) -> Figure
     draw_variation(place(1, 0), takes, limits)
     draw_proximity(place(0, 1), shared, limits.get("near", 0.0))
     draw_synchronicity(place(1, 1), shared)
-    draw_times(page.add_axes((0.16, 0.45 / tall, 0.80, ROW * max(rows, 2) / tall)), shared[:ROWS], len(shared))
+    draw_times(page.add_axes((0.16, 0.35 / tall, 0.82, ROW * max(rows, 2) / tall)), shared[:ROWS], len(shared))
     if path is not None:
         style.save(page, Path(path), dpi)
     return page
@@ -72,7 +72,7 @@ def gathered(takes: list[TakeSignals], name: str, kind: str) -> tuple[np.ndarray
 def draw_gaps(axes: Axes, takes: list[TakeSignals], limit: float) -> None:
     """How near bodies are to each other: below the threshold they touch."""
     gaps, held = gathered(takes, "gap", "contact")
-    title(axes, "Contact: gap between two bodies' surfaces, cm", "contact")
+    title(axes, "Contact: gap between two bodies' surfaces, cm; grey below: they slide past")
     near = gaps < FAR - 1e-6
     if not near.any():
         return nothing(axes, "nobody comes within 30 cm of anybody")
@@ -85,7 +85,7 @@ def draw_gaps(axes: Axes, takes: list[TakeSignals], limit: float) -> None:
 
 def draw_variation(axes: Axes, takes: list[TakeSignals], limits: dict[str, float]) -> None:
     """How much people move within half a second: those who stay in place, and those who travel."""
-    title(axes, "Acting: variation of a person's pose (eq. 4), m²; faint: below", "proximity")
+    title(axes, "Acting: variation of a person's pose within half a second (eq. 4), m²")
     people = [(np.asarray(v), np.asarray(t)) for take in takes for v, t in zip(take.variation, take.travels, strict=True)]
     variation = np.concatenate([*(v for v, _ in people), np.empty(0)])
     travels = np.concatenate([*(t for _, t in people), np.empty(0, dtype=bool)])
@@ -100,11 +100,12 @@ def draw_variation(axes: Axes, takes: list[TakeSignals], limits: dict[str, float
         limit = limits[name]
         counts, _ = np.histogram(shown[chosen], bins)
         shares = counts / counts.max()
-        axes.stairs(shares, bins, fill=True, color=style.mix(colour, style.FLOOR, 0.72))
-        axes.stairs(np.where(bins[:-1] >= limit, shares, np.nan), bins, fill=True, color=colour, alpha=0.75)
-        mark(axes, limit, f"{words}: acts above {limit:.2g}", colour, 0.94 - 0.11 * row)
-    axes.set_xscale("log")
-    axes.set_ylim(0, 1.25)
+        axes.stairs(shares, bins, fill=True, color=style.mix(colour, style.FLOOR, 0.72), alpha=0.8)
+        axes.stairs(np.where(bins[1:] > limit, shares, np.nan), bins, fill=True, color=colour, alpha=0.75)
+        axes.set_xscale("log")
+        axes.set_xlim(bins[0], bins[-1])
+        mark(axes, limit, f"{words}: acts above {limit:.2g}", colour, 0.96 - 0.1 * row)
+    axes.set_ylim(0, 1.35)
     axes.set_yticks([])
     axes.set_ylabel("share of frames", size=8.5, color=style.FAINT)
     return None
@@ -114,7 +115,7 @@ def draw_proximity(axes: Axes, takes: list[TakeSignals], near: float) -> None:
     """How far people are apart, and how strongly the one acts who acts more."""
     apart, held = gathered(takes, "apart", "proximity")
     reaction, _ = gathered(takes, "reaction", "proximity")
-    title(axes, "Proximity: distance of the hips, m, and reaction, × threshold", "proximity")
+    title(axes, "Proximity: distance of the hips, m, and reaction, × threshold of acting")
     if not len(apart):
         return nothing(axes, "no take of two people")
     far = max(4.0, 2.5 * near)
@@ -136,7 +137,7 @@ def draw_proximity(axes: Axes, takes: list[TakeSignals], near: float) -> None:
 def draw_synchronicity(axes: Axes, takes: list[TakeSignals]) -> None:
     """How much two people act at once, in view of each other."""
     values, held = gathered(takes, "synchronicity", "synchronicity")
-    title(axes, "Synchronicity with gaze (eq. 5), × threshold", "synchronicity")
+    title(axes, "Synchronicity with gaze (eq. 5), × threshold")
     acting = values > 0
     if not acting.any():
         return nothing(axes, "never do two people act at once in sight of each other")
@@ -169,19 +170,19 @@ def draw_times(axes: Axes, takes: list[TakeSignals], count: int) -> None:
     axes.grid(axis="y", visible=False)
     more = f"; {count - len(takes)} more takes are not shown" if count > len(takes) else ""
     axes.set_title(f"What was found, seconds{more}", loc="left", size=9.5, color=style.INK)
-    x = 1.0
-    for kind, colour in reversed(KINDS.items()):
+    for x, (kind, colour) in zip((0.76, 0.87, 1.0), KINDS.items(), strict=True):
         axes.annotate(kind, (x, 1), xytext=(0, 5), xycoords="axes fraction", textcoords="offset points",
                       ha="right", size=9, color=colour, weight="bold")  # fmt: skip
-        x -= 0.115
     return None
 
 
 def mark(axes: Axes, limit: float, words: str, colour: str = style.INK, height: float = 0.94) -> None:
     """A threshold: a line, and what it says beside it."""
     axes.axvline(limit, color=colour, lw=1.1, zorder=4)
-    axes.annotate(words, (limit, height), xycoords=("data", "axes fraction"), xytext=(4, 0),
-                  textcoords="offset points", size=8.5, color=colour, va="top", zorder=5)  # fmt: skip
+    right = axes.transLimits.transform(axes.transScale.transform((limit, 1.0)))[0] < 0.6
+    axes.annotate(words, (limit, height), xycoords=("data", "axes fraction"), xytext=(4 if right else -4, 0),
+                  textcoords="offset points", size=8.5, color=colour, va="top", ha="left" if right else "right",
+                  zorder=5)  # fmt: skip
 
 
 def nothing(axes: Axes, why: str) -> None:
@@ -191,7 +192,7 @@ def nothing(axes: Axes, why: str) -> None:
     axes.set_yticks([])
 
 
-def title(axes: Axes, text: str, _kind: str) -> None:
+def title(axes: Axes, text: str) -> None:
     """The line above a panel."""
     axes.set_title(text, loc="left", size=9.5, color=style.INK)
 
