@@ -81,7 +81,9 @@ def test_the_documented_reader_of_patch_sets_runs_and_is_right(
 
     monkeypatch.chdir(tmp_path)
     Path("people.patches").write_bytes(patches.read_bytes())
-    code = "\n".join(re.findall(r"```python\n(.*?)```", (ROOT / "docs/formats/patches.md").read_text(), flags=re.DOTALL))
+    code = "\n".join(
+        re.findall(r"```python\n(.*?)```", (ROOT / "docs/formats/patches.md").read_text(), flags=re.DOTALL)
+    )
     read: dict[str, Any] = {}
     exec(compile(code, "patches.md", "exec"), read)
     made = cq.PatchSet.load(patches)

@@ -154,7 +154,9 @@ def test_kinds_are_measured(patches: Path, samples: cq.PatchSet) -> None:
 def test_measures_are_told(patches: Path, samples: cq.PatchSet) -> None:
     told = json.loads(crowdquilt("kinds", patches, "--json").stdout)["kinds"]
     for kind, own in zip(told, cq.patch.measures(samples), strict=True):
-        assert kind["measures"]["words"] == own.words and kind["measures"]["radius"] == pytest.approx(own.radius, abs=1e-3)
+        assert kind["measures"]["words"] == own.words and kind["measures"]["radius"] == pytest.approx(
+            own.radius, abs=1e-3
+        )
     text = crowdquilt("kinds", patches, "--each").stdout
     line = next(line for line in text.splitlines() if line.startswith("handshake-stand "))
     assert "stand together contact" in line and "stand → stand" in line

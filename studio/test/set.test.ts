@@ -95,7 +95,10 @@ describe("the boxes of a patch set written by Rust", () => {
 });
 
 describe("what is measured of a kind", () => {
-  type Told = { turn_deg: number; words: string[] } & Record<"people" | "seconds" | "speed" | "fastest" | "radius", number>;
+  type Told = { turn_deg: number; words: string[] } & Record<
+    "people" | "seconds" | "speed" | "fastest" | "radius",
+    number
+  >;
   const { measures } = JSON.parse(readFileSync(golden("kinds.json"), "utf8")) as { measures: Told[] };
 
   it("is what Rust measures", () => {

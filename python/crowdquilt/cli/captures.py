@@ -106,7 +106,7 @@ def tell(found: dict[str, Any]) -> None:
 @app.command(
     epilog=example(
         "patches out/samples -o samples.patches",
-        "patches captures/index.csv -o mine.patches --takes found",
+        "patches captures/index.csv -o mine.patches --takes found --plot events.png",
         "patches found --captures captures -o edited.patches",
         "patches out/samples --compose examples/compose -o out/composed.patches",
     )

@@ -23,8 +23,9 @@ ROWS = 40  # takes that are listed at most
 def events(made: Made, path: str | Path | None = None, dpi: int = 150) -> Figure:
     """Draw how events were told in the takes that nobody had annotated.
 
-    Above, the distributions of what is measured at every frame, with the thresholds that were chosen and the frames that
-    lie within something found; below, when what was found. Saves to `path` if one is given, and returns the figure.
+    Above, the distributions of what is measured at every frame, with the thresholds that were chosen and the frames
+    that lie within something found; below, when what was found. Saves to `path` if one is given, and returns the
+    figure.
     """
     takes = made.signals()
     shared = [take for take in takes if take.pairs]
@@ -76,7 +77,7 @@ def draw_gaps(axes: Axes, takes: list[TakeSignals], limit: float) -> None:
     near = gaps < FAR - 1e-6
     if not near.any():
         return nothing(axes, "nobody comes within 30 cm of anybody")
-    bins = np.linspace(min(-10, 100 * gaps[near].min()), 100 * FAR, 56)
+    bins = np.linspace(min(-10, 100 * gaps[near].min()), 100 * FAR, 56).tolist()
     axes.hist([100 * gaps[near & held], 100 * gaps[near & ~held]], bins, stacked=True, color=[KINDS["contact"], QUIET])
     mark(axes, 100 * limit, f"touch below {100 * limit:.0f} cm")
     axes.set_ylabel("frames", size=8.5, color=style.FAINT)
@@ -86,9 +87,8 @@ def draw_gaps(axes: Axes, takes: list[TakeSignals], limit: float) -> None:
 def draw_variation(axes: Axes, takes: list[TakeSignals], limits: dict[str, float]) -> None:
     """How much people move within half a second: those who stay in place, and those who travel."""
     title(axes, "Acting: variation of a person's pose within half a second (eq. 4), m²")
-    people = [(np.asarray(v), np.asarray(t)) for take in takes for v, t in zip(take.variation, take.travels, strict=True)]
-    variation = np.concatenate([*(v for v, _ in people), np.empty(0)])
-    travels = np.concatenate([*(t for _, t in people), np.empty(0, dtype=bool)])
+    variation = np.concatenate([*(v for take in takes for v in take.variation), np.empty(0)])
+    travels = np.concatenate([*(t for take in takes for t in take.travels), np.empty(0, dtype=bool)])
     if not len(variation):
         return nothing(axes, "no take was looked at")
     shown = np.maximum(variation, LEAST)
@@ -142,7 +142,7 @@ def draw_synchronicity(axes: Axes, takes: list[TakeSignals]) -> None:
     if not acting.any():
         return nothing(axes, "never do two people act at once in sight of each other")
     shown = np.maximum(values, LEAST)
-    bins = np.geomspace(LEAST, max(shown.max(), 10.0) * 1.01, 56)
+    bins = np.geomspace(LEAST, max(shown.max(), 10.0) * 1.01, 56).tolist()
     colours = [KINDS["synchronicity"], QUIET]
     axes.hist([shown[acting & held], shown[acting & ~held]], bins, stacked=True, color=colours)
     axes.set_xscale("log")
