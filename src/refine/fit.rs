@@ -26,7 +26,7 @@ const APPROACH_FRAMES: f32 = 20.0;
 /// A touching hand or a foot that falls short of its place by more than this is told, metres.
 const MAX_MISS: f32 = 0.004;
 /// A joint that is further beyond its limits than the canonical body's by more than this is told, radians.
-const MAX_EXCESS: f32 = 3.5 / 180.0 * std::f32::consts::PI;
+const MAX_EXCESS: f32 = 2.5 / 180.0 * std::f32::consts::PI;
 
 /// A hand that touches somebody or holds a box, or hips that sit on one, in frames of the body's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]

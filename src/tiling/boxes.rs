@@ -1,20 +1,17 @@
 //! Exact tests of the boxes that people carry or that lie there: they enter no body, no wall and no other box.
 
-use glam::{Quat, Vec2, Vec3};
+use glam::Vec2;
 
 use super::bake::Chains;
 use super::domain::Domain;
+use super::figure::{Figure, REACH, TOLERANCE, frame_at};
 use super::piece::Piece;
 use super::tracks::TrackId;
 use crate::geom::{Capsule, Cuboid};
-use crate::motion::body_capsules;
+use crate::motion::canonical;
 use crate::refine::{Body, Performance};
 use crate::stage::Prop;
 
-/// Interpenetration that is let pass, metres.
-const TOLERANCE: f32 = 0.005;
-/// No body reaches further from its hips than this, metres.
-const REACH: f32 = 1.1;
 /// A box nearer to where one lies than this is that box, metres.
 const SAME: f32 = 0.02;
 /// Points of a box's edges that are tested against walls are this far apart, metres.
@@ -85,18 +82,12 @@ fn sitter(chains: Chains, prop: &Prop) -> Option<TrackId> {
 
 /// How deep a box is in a body of canonical build at a tick, metres.
 fn depth_in_body(cuboid: &Cuboid, body: &Body, tick: i32) -> f32 {
-    let Some(frame) = usize::try_from(tick - body.begin as i32).ok().filter(|&f| f < body.root.len()) else {
-        return 0.0;
-    };
+    let Some(frame) = frame_at(body, tick) else { return 0.0 };
     let (middle, root) = (cuboid.at.middle, body.root[frame]);
     if Vec2::new(middle.x - root.x, middle.z - root.z).length() > REACH + cuboid.radius() {
         return 0.0;
     }
-    let mut globals: Vec<(Vec3, Quat)> = Vec::new();
-    let mut capsules = Vec::new();
-    body.globals(frame, &mut globals);
-    body_capsules(&globals, &mut capsules);
-    depth_in(cuboid, &capsules)
+    Figure::of(body, canonical(), tick).map_or(0.0, |figure| depth_in(cuboid, &figure.capsules))
 }
 
 /// How deep a box is in a body's capsules, metres; 0 if it is not.
