@@ -134,15 +134,12 @@ impl GroupLinks {
     }
 }
 
+type Bodies<'py> = PyResult<Bound<'py, PyArray3<f32>>>;
+
 /// The body of one role of one kind: (frames, joints, 3) positions of the joints in metres, in the patch's own frame,
 /// y up. The joints are those of every crowd (`Crowd.joints`).
 #[pyfunction]
-pub fn kind_positions<'py>(
-    py: Python<'py>,
-    patches: &PatchSet,
-    kind: usize,
-    role: usize,
-) -> PyResult<Bound<'py, PyArray3<f32>>> {
+pub fn kind_positions<'py>(py: Python<'py>, patches: &PatchSet, kind: usize, role: usize) -> Bodies<'py> {
     let add = |globals: &[(Vec3, Quat)], out: &mut Vec<f32>| out.extend(globals.iter().flat_map(|(p, _)| p.to_array()));
     stack(py, every_frame(py, patches, kind, role, add)?, JOINT_COUNT, 3)
 }
@@ -150,12 +147,7 @@ pub fn kind_positions<'py>(
 /// The body of one role of one kind as (frames, capsules, 7) capsules: both ends x, y, z and the radius in metres, in
 /// the patch's own frame. They are those of `Crowd.capsules`.
 #[pyfunction]
-pub fn kind_capsules<'py>(
-    py: Python<'py>,
-    patches: &PatchSet,
-    kind: usize,
-    role: usize,
-) -> PyResult<Bound<'py, PyArray3<f32>>> {
+pub fn kind_capsules<'py>(py: Python<'py>, patches: &PatchSet, kind: usize, role: usize) -> Bodies<'py> {
     let mut capsules = Vec::new();
     let add = |globals: &[(Vec3, Quat)], out: &mut Vec<f32>| {
         capsules.clear();

@@ -1,107 +1,74 @@
 /** The page of a patch set in a real browser. */
 
 import { readFileSync } from "node:fs";
-import type { Browser, Page } from "playwright-core";
-import { afterAll, beforeAll, beforeEach, describe, expect, it } from "vitest";
+import { describe, expect, it } from "vitest";
 import { Pose, samplePose } from "../src/crowd/sample";
 import { crowdOf } from "../src/set/crowd";
 import { readSet } from "../src/set/reader";
-import { findChrome, launch } from "./browser";
 import { changed, screenshot } from "./pixels";
-import { type Server, serve } from "./server";
+import { Site } from "./site";
 
 /** Of tests/golden_set.rs: `step` of one person, `meet` of two, which is a mirrored copy. */
 const bytes = new Uint8Array(readFileSync(new URL("../test/golden/kinds.patches", import.meta.url)));
 const set = readSet(bytes.slice().buffer);
 
-let server: Server;
-let browser: Browser;
-let page: Page;
-let complaints: string[];
-
-async function open(query: string): Promise<void> {
-  await page.goto(`${server.url}/?${query}`);
-  await page.evaluate(() => window.crowdquilt.ready);
-}
-
-const state = () => page.evaluate(() => window.crowdquilt.state());
-const shownKind = () => page.textContent(".kind h2");
-/** Waits until the picture shows the chosen kind. */
-const seek = (secs: number) => page.evaluate((t) => window.crowdquilt.seek(t), secs);
-
-beforeAll(async () => {
-  server = await serve("dist");
-  server.data.set("crowd.crowd", bytes);
-  browser = await launch(findChrome() as string);
-});
-afterAll(async () => {
-  await browser?.close();
-  await server?.close();
-});
-beforeEach(async () => {
-  await page?.close();
-  page = await browser.newPage({ viewport: { width: 1100, height: 700 } });
-  complaints = [];
-  page.on(
-    "console",
-    (m) => ["error", "warning"].includes(m.type()) && !/GPU stall/.test(m.text()) && complaints.push(m.text()),
-  );
-  page.on("pageerror", (e) => complaints.push(e.message));
-});
+const site = new Site({ "crowd.crowd": bytes });
+const { open, seek, state } = site;
+const shownKind = () => site.page.textContent(".kind h2");
 
 describe("the page of a patch set", () => {
   it("lists kinds without mirrored copies, and plays the first in a loop", async () => {
     await open("");
-    expect(await page.locator(".kinds li").count()).toBe(1);
-    expect(await page.textContent(".found")).toBe("1 of 2 kinds");
+    expect(await site.page.locator(".kinds li").count()).toBe(1);
+    expect(await site.page.textContent(".found")).toBe("1 of 2 kinds");
     expect(await shownKind()).toBe("step");
-    expect(await page.textContent(".roles")).toContain("stand → walk left");
-    expect(await page.locator(".stats").count()).toBe(0);
+    expect(await site.page.textContent(".roles")).toContain("stand → walk left");
+    expect(await site.page.locator(".stats").count()).toBe(0);
     // Six frames take 0.2 s: later it has begun anew.
-    await page.waitForTimeout(600);
+    await site.page.waitForTimeout(600);
     const { playing, time } = await state();
     expect(playing).toBe(true);
     expect(time).toBeLessThanOrEqual(0.2);
-    expect(complaints).toEqual([]);
+    expect(site.complaints).toEqual([]);
   });
 
   it("finds kinds by words and by people", async () => {
     await open("paused=1");
-    await page.click("text=Mirrored");
-    expect(await page.locator(".kinds li").count()).toBe(2);
-    await page.fill(".search", "friendly");
-    expect(await page.locator(".kinds .name").allTextContents()).toEqual(["meet"]);
-    await page.fill(".search", "");
-    await page.locator(".set .row button", { hasText: /^1$/ }).click();
-    expect(await page.locator(".kinds .name").allTextContents()).toEqual(["step"]);
+    await site.page.click("text=Mirrored");
+    expect(await site.page.locator(".kinds li").count()).toBe(2);
+    await site.page.fill(".search", "friendly");
+    expect(await site.page.locator(".kinds .name").allTextContents()).toEqual(["meet"]);
+    await site.page.fill(".search", "");
+    await site.page.locator(".set .row button", { hasText: /^1$/ }).click();
+    expect(await site.page.locator(".kinds .name").allTextContents()).toEqual(["step"]);
   });
 
   it("steps through the listed kinds by arrow keys, round and round, also from the search field", async () => {
     await open("paused=1");
-    await page.click("text=Mirrored");
-    await page.keyboard.press("ArrowDown");
+    await site.page.click("text=Mirrored");
+    await site.page.keyboard.press("ArrowDown");
     expect(await shownKind()).toBe("meet");
-    await page.keyboard.press("ArrowDown");
+    await site.page.keyboard.press("ArrowDown");
     expect(await shownKind()).toBe("step");
-    await page.focus(".search");
-    await page.keyboard.press("ArrowUp");
+    await site.page.focus(".search");
+    await site.page.keyboard.press("ArrowUp");
     expect(await shownKind()).toBe("meet");
-    expect(await page.locator(".current .name").textContent()).toBe("meet");
+    expect(await site.page.locator(".current .name").textContent()).toBe("meet");
     // Letters and the space bar belong to the field.
-    await page.keyboard.type("a b");
-    expect(await page.inputValue(".search")).toBe("a b");
+    await site.page.keyboard.type("a b");
+    expect(await site.page.inputValue(".search")).toBe("a b");
     expect((await state()).playing).toBe(false);
   });
 
   it("has the GPU's joints where the CPU's are, in every kind that is shown", async () => {
     await open("paused=1&kind=meet");
     for (const index of [1, 0, 1]) {
-      await page.locator(".kinds .name", { hasText: set.kinds[index].name }).click();
+      await site.page.locator(".kinds .name", { hasText: set.kinds[index].name }).click();
       const crowd = crowdOf(set, set.kinds[index]);
       const pose = new Pose(crowd.joints.length);
       for (const frame of [0, 2.5, 5]) {
         await seek(frame / set.fps);
-        const joints = await page.evaluate(() => window.crowdquilt.joints());
+        const joints = await site.page.evaluate(() => window.crowdquilt.joints());
         expect(joints).toHaveLength(crowd.characters.length * crowd.joints.length * 4);
         for (let person = 0; person < crowd.characters.length; person++) {
           const there = samplePose(crowd, person, frame / set.fps, pose);
@@ -118,10 +85,10 @@ describe("the page of a patch set", () => {
 
   it("marks paths and ports on the floor, and a touch only while it lasts", async () => {
     await open("paused=1&kind=meet&bare=1");
-    await page.evaluate(() => window.crowdquilt.bodies(false));
+    await site.page.evaluate(() => window.crowdquilt.bodies(false));
     const at = async (frame: number) => {
       await seek(frame / set.fps);
-      return screenshot(page);
+      return screenshot(site.page);
     };
     const orange = (image: { data: ArrayLike<number> }) => {
       let count = 0;
@@ -141,22 +108,22 @@ describe("the page of a patch set", () => {
   it("frees what was drawn of one kind when the next is shown", async () => {
     await open("paused=1&kind=meet");
     const memory = async () => {
-      await page.keyboard.press("ArrowDown");
-      await page.keyboard.press("ArrowDown");
+      await site.page.keyboard.press("ArrowDown");
+      await site.page.keyboard.press("ArrowDown");
       await seek(0.1);
-      return page.evaluate(() => window.crowdquilt.frame().memory);
+      return site.page.evaluate(() => window.crowdquilt.frame().memory);
     };
     await memory();
     const before = await memory();
     for (let i = 0; i < 3; i++) await memory();
     expect(await memory()).toEqual(before);
-    expect(complaints).toEqual([]);
+    expect(site.complaints).toEqual([]);
   });
 
   it("says what is wrong with a set that is cut", async () => {
-    server.data.set("cut.patches", bytes.slice(0, 900));
-    await page.goto(`${server.url}/?crowd=/data/cut.patches`);
-    await page.waitForSelector(".problem");
-    expect(await page.textContent(".problem p")).toMatch(/cut\.patches: byte 12: expected .* the file is cut/);
+    site.server.data.set("cut.patches", bytes.slice(0, 900));
+    await site.page.goto(`${site.server.url}/?crowd=/data/cut.patches`);
+    await site.page.waitForSelector(".problem");
+    expect(await site.page.textContent(".problem p")).toMatch(/cut\.patches: byte 12: expected .* the file is cut/);
   });
 });

@@ -1,15 +1,13 @@
 /** The built page in a real browser. CROWD=path tests with a crowd file of one's own. */
 
 import { readFileSync } from "node:fs";
-import type { Browser, Page } from "playwright-core";
-import { afterAll, beforeAll, beforeEach, describe, expect, it } from "vitest";
+import { describe, expect, it } from "vitest";
 import { duration } from "../src/crowd/model";
 import { readCrowd } from "../src/crowd/reader";
 import { Pose, samplePose } from "../src/crowd/sample";
 import { fixtureCrowd } from "../test/fixture";
-import { findChrome, launch } from "./browser";
 import { changed, screenshot } from "./pixels";
-import { type Server, serve } from "./server";
+import { Site } from "./site";
 
 const own = process.env.CROWD;
 const bytes = own ? new Uint8Array(readFileSync(own)) : new Uint8Array(fixtureCrowd().bytes);
@@ -25,19 +23,8 @@ const REPORT = {
   ],
 };
 
-let server: Server;
-let browser: Browser;
-let page: Page;
-let complaints: string[];
-
-/** Opens the page and waits for its first picture. */
-async function open(query: string): Promise<void> {
-  await page.goto(`${server.url}/?${query}`);
-  await page.evaluate(() => window.crowdquilt.ready);
-}
-
-const seek = (secs: number) => page.evaluate((t) => window.crowdquilt.seek(t), secs);
-const state = () => page.evaluate(() => window.crowdquilt.state());
+const site = new Site({ "crowd.crowd": bytes, "report.json": new TextEncoder().encode(JSON.stringify(REPORT)) });
+const { open, seek, state } = site;
 
 /** Somebody present at `secs`. */
 function somebody(secs: number): number {
@@ -45,59 +32,38 @@ function somebody(secs: number): number {
   return crowd.characters.findIndex((c) => c.begin <= frame && frame <= c.begin + c.frames - 1);
 }
 
-beforeAll(async () => {
-  server = await serve("dist");
-  server.data.set("crowd.crowd", bytes);
-  server.data.set("report.json", new TextEncoder().encode(JSON.stringify(REPORT)));
-  browser = await launch(findChrome() as string);
-});
-afterAll(async () => {
-  await browser?.close();
-  await server?.close();
-});
-beforeEach(async () => {
-  await page?.close();
-  page = await browser.newPage({ viewport: { width: 1100, height: 700 } });
-  complaints = [];
-  page.on(
-    "console",
-    (m) => ["error", "warning"].includes(m.type()) && !/GPU stall/.test(m.text()) && complaints.push(m.text()),
-  );
-  page.on("pageerror", (e) => complaints.push(e.message));
-});
-
 describe("the page", () => {
   it("loads a crowd and its report without a complaint", async () => {
     await open("paused=1&t=1");
-    expect(await page.textContent(".stats")).toContain(`People${crowd.characters.length.toLocaleString("en")}`);
-    await page.waitForSelector(".checks li.bad");
-    expect(await page.textContent("summary")).toBe("1 of 2 checks fail");
-    expect(await page.locator(".checks li.good").count()).toBe(1);
+    expect(await site.page.textContent(".stats")).toContain(`People${crowd.characters.length.toLocaleString("en")}`);
+    await site.page.waitForSelector(".checks li.bad");
+    expect(await site.page.textContent("summary")).toBe("1 of 2 checks fail");
+    expect(await site.page.locator(".checks li.good").count()).toBe(1);
     expect((await state()).time).toBeCloseTo(1, 6);
-    expect(complaints).toEqual([]);
+    expect(site.complaints).toEqual([]);
   });
 
   it("asks nobody but its own server", async () => {
     const asked: string[] = [];
-    page.on("request", (r) => asked.push(r.url()));
+    site.page.on("request", (r) => asked.push(r.url()));
     await open("paused=1");
-    expect(asked.filter((url) => !url.startsWith(server.url) && !url.startsWith("data:"))).toEqual([]);
+    expect(asked.filter((url) => !url.startsWith(site.server.url) && !url.startsWith("data:"))).toEqual([]);
   });
 
   it("plays, stops, steps and shows the time", async () => {
     await open("t=0.5");
     expect((await state()).playing).toBe(true);
-    await page.waitForFunction(() => window.crowdquilt.state().time > 0.6);
-    await page.keyboard.press(" ");
+    await site.page.waitForFunction(() => window.crowdquilt.state().time > 0.6);
+    await site.page.keyboard.press(" ");
     const stopped = await state();
     expect(stopped.playing).toBe(false);
-    await page.keyboard.press("ArrowRight");
-    await page.keyboard.press("ArrowRight");
+    await site.page.keyboard.press("ArrowRight");
+    await site.page.keyboard.press("ArrowRight");
     const frames = (await state()).time * crowd.fps;
     expect(frames).toBeCloseTo(Math.floor(stopped.time * crowd.fps + 1e-4) + 2, 3);
-    expect(await page.textContent(".clock")).toBe(`0:${(await state()).time.toFixed(2).padStart(5, "0")}`);
-    const track = await page.locator(".track").boundingBox();
-    await page.mouse.click(track!.x + track!.width / 2, track!.y + 10);
+    expect(await site.page.textContent(".clock")).toBe(`0:${(await state()).time.toFixed(2).padStart(5, "0")}`);
+    const track = await site.page.locator(".track").boundingBox();
+    await site.page.mouse.click(track!.x + track!.width / 2, track!.y + 10);
     expect((await state()).time / end).toBeCloseTo(0.5, 2);
   });
 });
@@ -108,7 +74,7 @@ describe("the picture", () => {
     const pose = new Pose(crowd.joints.length);
     for (const secs of [0, end * 0.31, end * 0.5017, end * 0.77, end]) {
       await seek(secs);
-      const joints = await page.evaluate(() => window.crowdquilt.joints());
+      const joints = await site.page.evaluate(() => window.crowdquilt.joints());
       expect(joints).toHaveLength(crowd.characters.length * crowd.joints.length * 4);
       let worst = 0;
       let present = 0;
@@ -132,14 +98,14 @@ describe("the picture", () => {
   it("shows bodies where the hips are, and nothing of them elsewhere", async () => {
     const secs = end * 0.4;
     await open(`paused=1&t=${secs}&view=persp&outlines=none&bare=1`);
-    const shown = await screenshot(page);
-    await page.evaluate(() => window.crowdquilt.bodies(false));
-    const hidden = await screenshot(page);
+    const shown = await screenshot(site.page);
+    await site.page.evaluate(() => window.crowdquilt.bodies(false));
+    const hidden = await screenshot(site.page);
     expect(changed(shown, hidden)).toBeGreaterThan(crowd.characters.length * 20);
     let seen = 0;
     let present = 0;
     for (let person = 0; person < crowd.characters.length; person++) {
-      const at = await page.evaluate((p) => window.crowdquilt.project(p), person);
+      const at = await site.page.evaluate((p) => window.crowdquilt.project(p), person);
       if (!at) continue;
       present++;
       if (changed(shown, hidden, at, 2) >= 8) seen++;
@@ -151,27 +117,27 @@ describe("the picture", () => {
 
   it("changes with the time, and is the same at the same time", async () => {
     await open(`paused=1&t=${end * 0.2}&bare=1`);
-    const first = await screenshot(page);
+    const first = await screenshot(site.page);
     await seek(end * 0.6);
-    expect(changed(first, await screenshot(page))).toBeGreaterThan(500);
+    expect(changed(first, await screenshot(site.page))).toBeGreaterThan(500);
     await seek(end * 0.2);
-    expect(changed(first, await screenshot(page))).toBe(0);
+    expect(changed(first, await screenshot(site.page))).toBe(0);
   });
 
   it("changes with colours, outlines and views", async () => {
     await open(`paused=1&t=${end * 0.5}`);
-    let before = await screenshot(page);
+    let before = await screenshot(site.page);
     for (const key of ["c", "c", "o", "2", "3", "l"]) {
-      await page.keyboard.press(key);
-      await page.waitForTimeout(1200);
-      const after = await screenshot(page);
+      await site.page.keyboard.press(key);
+      await site.page.waitForTimeout(1200);
+      const after = await screenshot(site.page);
       expect(changed(before, after), `key ${key}`).toBeGreaterThan(100);
       before = after;
     }
     expect((await state()).view).toBe("loom");
-    await page.keyboard.press("l");
+    await site.page.keyboard.press("l");
     expect((await state()).view).toBe("persp");
-    expect(complaints).toEqual([]);
+    expect(site.complaints).toEqual([]);
   });
 });
 
@@ -179,32 +145,32 @@ describe("a click", () => {
   it("selects the person under it, and lets go beside everybody", async () => {
     await open(`paused=1&t=${end * 0.4}&view=top`);
     const person = somebody(end * 0.4);
-    const at = await page.evaluate((p) => window.crowdquilt.project(p), person);
-    await page.mouse.click(at!.x, at!.y);
+    const at = await site.page.evaluate((p) => window.crowdquilt.project(p), person);
+    await site.page.mouse.click(at!.x, at!.y);
     expect((await state()).person).toBe(person);
-    expect(await page.textContent(".inspector h2")).toBe(`Person ${person}`);
-    expect(await page.locator(".chain li").count()).toBe(crowd.characters[person].fragments.length);
-    const last = page.locator(".chain button").last();
+    expect(await site.page.textContent(".inspector h2")).toBe(`Person ${person}`);
+    expect(await site.page.locator(".chain li").count()).toBe(crowd.characters[person].fragments.length);
+    const last = site.page.locator(".chain button").last();
     await last.click();
     const fragment = crowd.characters[person].fragments.at(-1)!;
     expect((await state()).time * crowd.fps).toBeCloseTo(Math.max(fragment.begin, crowd.characters[person].begin), 1);
-    await page.keyboard.press("Escape");
+    await site.page.keyboard.press("Escape");
     expect((await state()).person).toBeNull();
-    expect(await page.locator(".inspector").isVisible()).toBe(false);
+    expect(await site.page.locator(".inspector").isVisible()).toBe(false);
   });
 
   it("selects on the loom's plane too", async () => {
     await open(`paused=1&t=${end * 0.4}&view=loom`);
     const person = somebody(end * 0.4);
-    const at = await page.evaluate((p) => window.crowdquilt.project(p), person);
-    await page.mouse.click(at!.x, at!.y);
+    const at = await site.page.evaluate((p) => window.crowdquilt.project(p), person);
+    await site.page.mouse.click(at!.x, at!.y);
     // Somebody else may stand in front.
     expect((await state()).person).not.toBeNull();
   });
 
   it("follows", async () => {
     await open(`paused=1&t=${end * 0.2}&person=${somebody(end * 0.2)}&follow=1`);
-    const place = () => page.evaluate((p) => window.crowdquilt.project(p), somebody(end * 0.2));
+    const place = () => site.page.evaluate((p) => window.crowdquilt.project(p), somebody(end * 0.2));
     const before = await place();
     await seek(end * 0.2 + 1);
     const after = await place();
@@ -224,12 +190,12 @@ describe("broken files", () => {
     ["newer", Uint8Array.from(bytes.slice(0, 64)).fill(9, 8, 9), /byte 8: expected version 1 or 2, found 9/],
   ];
   it.each(cases)("give one clear message: %s", async (name, content, message) => {
-    if (content) server.data.set(`${name}.crowd`, content);
-    await page.goto(`${server.url}/?crowd=/data/${name}.crowd`);
-    await page.waitForSelector(".problem");
-    expect(await page.textContent(".problem p")).toMatch(message);
-    expect(await page.textContent(".problem p")).toContain(`/data/${name}.crowd`);
-    const refused = await page.evaluate(() => window.crowdquilt.ready.then(() => "", String));
+    if (content) site.server.data.set(`${name}.crowd`, content);
+    await site.page.goto(`${site.server.url}/?crowd=/data/${name}.crowd`);
+    await site.page.waitForSelector(".problem");
+    expect(await site.page.textContent(".problem p")).toMatch(message);
+    expect(await site.page.textContent(".problem p")).toContain(`/data/${name}.crowd`);
+    const refused = await site.page.evaluate(() => window.crowdquilt.ready.then(() => "", String));
     expect(refused).toMatch(message);
   });
 });
@@ -238,8 +204,8 @@ describe("the cost of a picture", () => {
   const many = (people: number, secs: number) => {
     // No obstacles: whether they are in sight would change the number of draw calls.
     const alter = (header: Record<string, unknown>) => Object.assign(header.domain as object, { obstacles: [] });
-    server.data.set("many.crowd", new Uint8Array(fixtureCrowd({ people, secs, alter }).bytes));
-    return page.setViewportSize({ width: 320, height: 200 });
+    site.server.data.set("many.crowd", new Uint8Array(fixtureCrowd({ people, secs, alter }).bytes));
+    return site.page.setViewportSize({ width: 320, height: 200 });
   };
 
   it("is a dozen draw calls for 12 people as for 200", async () => {
@@ -247,7 +213,7 @@ describe("the cost of a picture", () => {
       await many(people, 2);
       await open("paused=1&crowd=/data/many.crowd&outlines=all");
       // A picture of a new time: one of the same time needs no new poses, which saves a call.
-      return page.evaluate(() => window.crowdquilt.seek(1).then(() => window.crowdquilt.frame().drawCalls));
+      return site.page.evaluate(() => window.crowdquilt.seek(1).then(() => window.crowdquilt.frame().drawCalls));
     };
     const few = await calls(12);
     expect(few).toBeLessThan(15);
@@ -259,7 +225,7 @@ describe("the cost of a picture", () => {
       await many(people, 1);
       // Without a graphics card 2,000 bodies take seconds: their draw calls are left out, everything else is done.
       await open("paused=1&crowd=/data/many.crowd&outlines=all&bodies=0");
-      const measure = () => page.evaluate(() => window.crowdquilt.measure(20));
+      const measure = () => site.page.evaluate(() => window.crowdquilt.measure(20));
       // The first pictures compile code; of the others the quietest batch counts, for the machine has other work too.
       await measure();
       const batches = [await measure(), await measure(), await measure()];

@@ -1,6 +1,7 @@
 /** A few words for building the page. */
 
 type Child = Node | string | null;
+type Value = string | readonly (Node | string)[];
 
 /** An element with classes (after dots), attributes and children. */
 export function el<K extends keyof HTMLElementTagNameMap>(
@@ -35,6 +36,21 @@ export function choice<T extends string>(
     for (const [i, b] of buttons.entries()) b.setAttribute("aria-pressed", String(options[i][0] === value));
   };
   return { element, mark };
+}
+
+/** The panel at the top left: our name, what this is, and more. */
+export function headed(classes: string, tagline: string, children: readonly Child[]): HTMLElement {
+  const head = [el("h1", "", ["Crowdquilt"]), el("p", "tagline", [tagline])];
+  return el("section", `${classes} panel`, [...head, ...children]);
+}
+
+/** Names on the left, values on the right. */
+export function pairs(classes: string, rows: readonly (readonly [name: string, value: Value])[]): HTMLElement {
+  return el("dl", classes, pairRows(rows));
+}
+
+export function pairRows(rows: readonly (readonly [name: string, value: Value])[]): HTMLElement[] {
+  return rows.flatMap(([name, value]) => [el("dt", "", [name]), el("dd", "", [value].flat())]);
 }
 
 const NAMESPACE = "http://www.w3.org/2000/svg";

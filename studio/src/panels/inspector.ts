@@ -5,7 +5,7 @@ import type { Character, Crowd, Fragment } from "../crowd/model";
 import { bytes, categorical, looksOf } from "../draw/palette";
 import { clockText, type Player } from "../play/player";
 import type { Store } from "../store";
-import { button, el } from "./dom";
+import { button, el, pairs } from "./dom";
 
 export function installInspector(parent: HTMLElement, store: Store, player: Player): void {
   const panel = el("section", "inspector panel");
@@ -100,13 +100,7 @@ function now(crowd: Crowd, f: Fragment, members: Member[][], store: Store, perso
     ["From", [`${seconds(crowd, f.begin)} to ${seconds(crowd, f.end)}`]],
   ];
   if (kind.labels.length > 0) rows.push(["Labels", [kind.labels.join(", ")]]);
-  return [
-    el(
-      "dl",
-      "facts",
-      rows.flatMap(([name, value]) => [el("dt", "", [name]), el("dd", "", value)]),
-    ),
-  ];
+  return [pairs("facts", rows)];
 }
 
 /** The whole life as one bar; click to go there. */

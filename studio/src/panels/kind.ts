@@ -5,7 +5,7 @@ import { clockText, type Player } from "../play/player";
 import { measuresOf } from "../set/measure";
 import type { Contact, PatchSet, SetKind } from "../set/model";
 import type { Store } from "../store";
-import { button, el } from "./dom";
+import { button, el, pairs } from "./dom";
 
 export function installKind(
   parent: HTMLElement,
@@ -67,11 +67,7 @@ function facts(set: PatchSet, kind: SetKind, secs: (frame: number) => string): H
     ["Turn", turned(turnDeg)],
     ["Radius", `${radius.toFixed(1)} m`],
   );
-  return el(
-    "dl",
-    "facts",
-    rows.flatMap(([name, value]) => [el("dt", "", [name]), el("dd", "", [value])]),
-  );
+  return pairs("facts", rows);
 }
 
 function turned(degrees: number): string {

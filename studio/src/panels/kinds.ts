@@ -4,7 +4,7 @@ import { roleColor } from "../draw/palette";
 import { listed } from "../set/list";
 import { type PatchSet, seconds } from "../set/model";
 import { MANY, type Store } from "../store";
-import { button, choice, el } from "./dom";
+import { button, choice, el, headed } from "./dom";
 
 export function installKinds(parent: HTMLElement, store: Store, set: PatchSet): void {
   const search = el("input", "search", [], { type: "search", placeholder: "Name, label, pose group, activity" });
@@ -26,9 +26,7 @@ export function installKinds(parent: HTMLElement, store: Store, set: PatchSet): 
   const found = el("p", "found quiet");
   const list = el("ol", "kinds");
   parent.append(
-    el("section", "set panel", [
-      el("h1", "", ["Crowdquilt"]),
-      el("p", "tagline", ["kinds of motion patches"]),
+    headed("set", "kinds of motion patches", [
       search,
       el("div", "row", [people.element, el("div", "choice", [mirrored])]),
       found,

@@ -4,19 +4,12 @@ import { multiPersonShare } from "../crowd/lookup";
 import { type Crowd, duration } from "../crowd/model";
 import { type CheckRow, type Report, shortNumber } from "../report";
 import type { Store } from "../store";
-import { el } from "./dom";
+import { el, headed, pairRows } from "./dom";
 
 export function installStats(parent: HTMLElement, store: Store): void {
   const numbers = el("dl", "numbers");
   const checks = el("div", "checks");
-  parent.append(
-    el("section", "stats panel", [
-      el("h1", "", ["Crowdquilt"]),
-      el("p", "tagline", ["a crowd of motion patches"]),
-      numbers,
-      checks,
-    ]),
-  );
+  parent.append(headed("stats", "a crowd of motion patches", [numbers, checks]));
   const show = () => {
     const crowd = store.get("crowd");
     if (!crowd) return;
@@ -39,7 +32,7 @@ function numberRows(crowd: Crowd, report: Report | null): HTMLElement[] {
   if (report?.danglings !== undefined) rows.push(["Loose ends", shortNumber(report.danglings)]);
   if (report?.solve_secs !== undefined) rows.push(["Woven in", `${shortNumber(report.solve_secs)} s`]);
   rows.push(["Seed", crowd.seed]);
-  return rows.flatMap(([name, value]) => [el("dt", "", [name]), el("dd", "", [value])]);
+  return pairRows(rows);
 }
 
 function checkRows(report: Report | null): HTMLElement[] {

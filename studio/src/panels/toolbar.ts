@@ -2,7 +2,7 @@
 
 import { type ColorMode, type Outlines, type Store, VIEWS, type View } from "../store";
 import { changeView, HELP } from "../tools/keys";
-import { button, choice, el } from "./dom";
+import { button, choice, el, pairs } from "./dom";
 
 const VIEW_TEXT: Record<View, [string, string]> = {
   persp: ["Perspective", "Perspective (1)"],
@@ -35,11 +35,7 @@ export function installToolbar(parent: HTMLElement, store: Store): void {
     ],
     (value) => store.set("outlines", value),
   );
-  const help = el(
-    "dl",
-    "help panel",
-    HELP.flatMap(([key, what]) => [el("dt", "", [key]), el("dd", "", [what])]),
-  );
+  const help = pairs("help panel", HELP);
   help.hidden = true;
   const helpButton = button(
     "?",
