@@ -180,9 +180,11 @@ def mark(axes: Axes, limit: float, words: str, colour: str = style.INK, height: 
     """A threshold: a line, and what it says beside it."""
     axes.axvline(limit, color=colour, lw=1.1, zorder=4)
     right = axes.transLimits.transform(axes.transScale.transform((limit, 1.0)))[0] < 0.6
-    axes.annotate(words, (limit, height), xycoords=("data", "axes fraction"), xytext=(4 if right else -4, 0),
+    # On a ground of its own: words of one threshold may reach over the line of another.
+    ground = {"facecolor": style.FLOOR, "edgecolor": "none", "pad": 1.2}
+    axes.annotate(words, (limit, height), xycoords=("data", "axes fraction"), xytext=(5 if right else -5, 0),
                   textcoords="offset points", size=8.5, color=colour, va="top", ha="left" if right else "right",
-                  zorder=5)  # fmt: skip
+                  zorder=5, bbox=ground)  # fmt: skip
 
 
 def nothing(axes: Axes, why: str) -> None:
@@ -202,6 +204,6 @@ def dress(axes: Axes) -> None:
     axes.set_facecolor(style.FLOOR)
     axes.grid(color=style.HAIR, lw=0.6)
     axes.set_axisbelow(True)
-    axes.tick_params(colors=style.FAINT, labelsize=8.5, length=0)
+    axes.tick_params(which="both", colors=style.FAINT, labelsize=8.5, length=0)
     for side in axes.spines.values():
         side.set_color(style.HAIR)
