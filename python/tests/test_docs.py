@@ -99,10 +99,11 @@ def test_the_documented_fields_of_patch_sets_are_those_of_the_file(patches: Path
     data = patches.read_bytes()
     header = json.loads(data[24 : 24 + int.from_bytes(data[12:16], "little")])
     kinds = header["kinds"]
-    prop = next(p for k in kinds for p in k["props"])
+    prop = next(p for k in kinds for p in k["props"] if p["holds"])
+    seat = next(p for k in kinds for p in k["props"] if p.get("sat"))
     contact = next(c for k in kinds for c in k["contacts"])
     fragment = next(f for k in kinds for f in k["fragments"] if f["plants"])
-    stored = [header, kinds[0], fragment, fragment["plants"][0], contact, contact["a"], prop, prop["holds"][0]]
+    stored = [header, kinds[0], fragment, fragment["plants"][0], contact, contact["a"], prop, prop["holds"][0], seat]
     names = {name for part in stored for name in part} | set(header["arrays"]) | {"name", "parent", "offset", "tip"}
     told = set(re.findall(r"`([\w.]+)`", (ROOT / "docs/formats/patches.md").read_text()))
     told |= {word for name in told for word in name.split(".")}

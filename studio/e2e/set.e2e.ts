@@ -60,6 +60,14 @@ describe("the page of a patch set", () => {
     expect((await state()).playing).toBe(false);
   });
 
+  it("tells who touches whom and who has a box when, and goes there", async () => {
+    await open("paused=1&kind=meet");
+    const told = site.page.locator(".touches li");
+    expect(await told.allTextContents()).toEqual(["0:00.00holds box", "0:00.13right handtorso", "0:00.17holds box"]);
+    await told.nth(1).locator("button").click();
+    expect((await state()).time).toBeCloseTo(4 / set.fps, 3);
+  });
+
   it("has the GPU's joints where the CPU's are, in every kind that is shown", async () => {
     await open("paused=1&kind=meet");
     for (const index of [1, 0, 1]) {

@@ -56,6 +56,21 @@ describe("a patch set written by Rust", () => {
   });
 });
 
+/** The file with a header that says something else. */
+function rewritten(alter: (header: { kinds: { props: Record<string, unknown>[] }[] }) => void): ArrayBuffer {
+  const length = new DataView(bytes()).getUint32(12, true);
+  const header = JSON.parse(new TextDecoder().decode(file.slice(24, 24 + length)));
+  alter(header);
+  const json = JSON.stringify(header);
+  const text = new TextEncoder().encode(json.padEnd(Math.ceil(json.length / 8) * 8, " "));
+  const out = new Uint8Array(file.length - length + text.length);
+  out.set(file.slice(0, 24));
+  new DataView(out.buffer).setUint32(12, text.length, true);
+  out.set(text, 24);
+  out.set(file.slice(24 + length), 24 + text.length);
+  return out.buffer;
+}
+
 describe("the boxes of a patch set written by Rust", () => {
   it("have their sizes and holders", () => {
     expect(set.kinds[0].props[0]).toMatchObject({ name: "parcel", holds: [{ role: 0, begin: 2, end: 4 }] });
@@ -67,6 +82,16 @@ describe("the boxes of a patch set written by Rust", () => {
       { character: 1, begin: 0, end: 7 },
       { character: 0, begin: 5, end: 10 },
     ]);
+  });
+
+  it("are sat on by people who are there", () => {
+    const seated = (begin: number, end: number) =>
+      rewritten((header) => {
+        header.kinds[0].props[0].sat = [{ role: 0, begin, end }];
+      });
+    expect(set.kinds[0].props[0].sat).toEqual([]);
+    expect(readSet(seated(5, 6)).kinds[0].props[0].sat).toEqual([{ role: 0, begin: 5, end: 6 }]);
+    expect(() => readSet(seated(5, 7))).toThrow(/kind step, prop parcel: role 0 cannot have it from frame 5 to 7/);
   });
 
   it("are where Rust has them, at rest and in the hands", () => {

@@ -3,7 +3,7 @@
 import { roleColor } from "../draw/palette";
 import { clockText, type Player } from "../play/player";
 import { measuresOf } from "../set/measure";
-import type { Contact, PatchSet, SetKind } from "../set/model";
+import type { PatchSet, SetKind } from "../set/model";
 import type { Store } from "../store";
 import { button, el, pairs } from "./dom";
 
@@ -31,15 +31,7 @@ export function installKind(
         kind.roles.map((_, role) => ports(set, kind, role)),
       ),
       facts(set, kind, secs),
-      ...(kind.contacts.length > 0
-        ? [
-            el(
-              "ol",
-              "touches",
-              kind.contacts.map((c) => touch(set, c, player)),
-            ),
-          ]
-        : []),
+      deeds(set, kind, player),
     );
     marks.replaceChildren(...spans(kind));
   });
@@ -47,13 +39,9 @@ export function installKind(
 
 function ports(set: PatchSet, kind: SetKind, role: number): HTMLElement {
   const { entry, exit, begin, frames } = kind.roles[role];
-  const name = (group: number) => set.groups[group].replaceAll("_", " ");
+  const name = (group: number) => plain(set.groups[group]);
   const time = `${(begin / set.fps).toFixed(1)}–${((begin + frames - 1) / set.fps).toFixed(1)} s`;
-  return el("li", "", [
-    el("i", "dot", [], { style: `background:${roleColor(role)}` }),
-    el("span", "name", [`${name(entry)} → ${name(exit)}`]),
-    el("span", "time", [time]),
-  ]);
+  return el("li", "", [dot(role), el("span", "name", [`${name(entry)} → ${name(exit)}`]), el("span", "time", [time])]);
 }
 
 function facts(set: PatchSet, kind: SetKind, secs: (frame: number) => string): HTMLElement {
@@ -75,18 +63,41 @@ function turned(degrees: number): string {
   return whole === 0 ? "none" : `${Math.abs(whole)}° to the ${whole > 0 ? "left" : "right"}`;
 }
 
-function touch(set: PatchSet, { a, b, begin }: Contact, player: Player): HTMLElement {
-  const dot = (role: number) => el("i", "dot", [], { style: `background:${roleColor(role)}` });
-  const words = (part: string) => part.replace("_", " ");
-  const made = button("", "Go there", () => player.seek(begin / set.fps), "touch");
+/** Who touches whom, holds what and sits where, in the order of time; to go there. Nothing if nobody does. */
+function deeds(set: PatchSet, { contacts, props }: SetKind, player: Player): HTMLElement | string {
+  const found: Deed[] = [
+    ...contacts.map(({ a, b, begin }): Deed => [begin, [dot(a.role), plain(a.part), dot(b.role), plain(b.part)]]),
+    ...props.flatMap(({ name, holds, sat }) => [
+      ...holds.map(({ role, begin }): Deed => [begin, [dot(role), `holds ${plain(name)}`]]),
+      ...sat.map(({ role, begin }): Deed => [begin, [dot(role), `sits on ${plain(name)}`]]),
+    ]),
+  ];
+  if (found.length === 0) return "";
+  found.sort(([a], [b]) => a - b);
+  return el(
+    "ol",
+    "touches",
+    found.map(([begin, words]) => deed(begin / set.fps, words, player)),
+  );
+}
+
+type Deed = [begin: number, words: (Node | string)[]];
+
+function deed(secs: number, words: Deed[1], player: Player): HTMLElement {
+  const made = button("", "Go there", () => player.seek(secs), "touch");
   made.append(
-    el("span", "time", [clockText(begin / set.fps)]),
-    dot(a.role),
-    el("span", "", [words(a.part)]),
-    dot(b.role),
-    el("span", "", [words(b.part)]),
+    el("span", "time", [clockText(secs)]),
+    ...words.map((w) => (typeof w === "string" ? el("span", "", [w]) : w)),
   );
   return el("li", "", [made]);
+}
+
+function plain(name: string): string {
+  return name.replaceAll("_", " ");
+}
+
+function dot(role: number): HTMLElement {
+  return el("i", "dot", [], { style: `background:${roleColor(role)}` });
 }
 
 /** What people do together as a band, contacts as bars. */

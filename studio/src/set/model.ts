@@ -36,6 +36,13 @@ export interface Upright {
   heading: number;
 }
 
+/** Who has a box from frame to frame of the kind's clock, both included. */
+export interface Hold {
+  role: number;
+  begin: number;
+  end: number;
+}
+
 /** A box that people hold in both hands or sit on; see src/patch/prop.rs. */
 export interface SetProp {
   name: string;
@@ -43,8 +50,10 @@ export interface SetProp {
   size: Vec3;
   /** Where its middle is, seen from the middle between the palms: up, and ahead of the person. */
   grip: readonly [up: number, ahead: number];
-  /** Who holds it from frame to frame of the kind's clock, both included; in order; none if they only sit on it. */
-  holds: { role: number; begin: number; end: number }[];
+  /** Who holds it, in order; none if they only sit on it. */
+  holds: Hold[];
+  /** Who sits on it while it rests. */
+  sat: Hold[];
   /** Where it rests before the first takes it up and after the last put it down. */
   before: Upright | null;
   after: Upright | null;

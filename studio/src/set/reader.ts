@@ -6,6 +6,7 @@ import { joint, vector } from "../crowd/reader";
 import {
   type BodyPart,
   type Contact,
+  type Hold,
   PARTS,
   type PatchSet,
   type Role,
@@ -94,11 +95,7 @@ function contact(value: unknown, place: string): Contact {
 
 function prop(value: unknown, place: string): SetProp {
   const v = object(value, place);
-  const holds = list(v.holds, `${place}, holds`).map((h, k) => {
-    const hold = object(h, `${place}, hold ${k}`);
-    const [role, begin, end] = ["role", "begin", "end"].map((key) => count(hold[key], `${place}, hold ${k}, ${key}`));
-    return { role, begin, end };
-  });
+  const holds = list(v.holds, `${place}, holds`).map((h, k) => hold(h, `${place}, hold ${k}`));
   if (holds.length === 0 && !(v.before && v.after)) {
     throw new FileProblem(place, "expected somebody to hold it, or it to rest all the time; found neither");
   }
@@ -107,9 +104,16 @@ function prop(value: unknown, place: string): SetProp {
     size: vector(v.size, 3, `${place}, size`) as Vec3,
     grip: vector(v.grip, 2, `${place}, grip`) as unknown as SetProp["grip"],
     holds,
+    sat: list(v.sat ?? [], `${place}, sat`).map((s, k) => hold(s, `${place}, sat ${k}`)),
     before: upright(v.before, `${place}, before`),
     after: upright(v.after, `${place}, after`),
   };
+}
+
+function hold(value: unknown, place: string): Hold {
+  const v = object(value, place);
+  const [role, begin, end] = ["role", "begin", "end"].map((key) => count(v[key], `${place}, ${key}`));
+  return { role, begin, end };
 }
 
 function upright(value: unknown, place: string): Upright | null {
@@ -148,11 +152,11 @@ function checkKind(set: PatchSet, kind: SetKind): void {
     const group = Math.max(own.entry, own.exit);
     if (group >= set.groups.length) throw new FileProblem(`${place}, role ${r}`, `pose group ${group} does not exist`);
   }
-  for (const { name, holds } of kind.props) {
-    for (const { role, begin, end } of holds) {
+  for (const { name, holds, sat } of kind.props) {
+    for (const { role, begin, end } of [...holds, ...sat]) {
       const own = kind.roles[role];
       if (own === undefined || begin < own.begin || end < begin || end >= own.begin + own.frames) {
-        throw new FileProblem(`${place}, prop ${name}`, `role ${role} cannot hold it from frame ${begin} to ${end}`);
+        throw new FileProblem(`${place}, prop ${name}`, `role ${role} cannot have it from frame ${begin} to ${end}`);
       }
     }
   }
