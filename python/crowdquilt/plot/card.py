@@ -27,6 +27,7 @@ MAP = (0.14, 1.50, 1.62, 0.92)
 SCALE, LEAST_SCALE, MAP_SCALE = 0.46, 0.33, 0.42  # per metre at most; of poses at least
 TALLEST = 0.88  # moment
 BETWEEN = 0.22  # metres between two moments
+MOST_LINES = 3  # of ports; more people than that share lines
 
 
 def draw(axes: Axes, card: Card, corner: np.ndarray) -> None:
@@ -77,7 +78,7 @@ def fitted(axes: Axes, place: np.ndarray, text: str, room: float, size: float, *
 def strip(axes: Axes, card: Card, corner: np.ndarray) -> None:
     """The key poses side by side, each with its second below."""
     moments = [(frame, *card.moment(frame)) for frame in card.moments]
-    reach = {frame: extent([body for _, body in people], card.view) for frame, people, _ in moments}
+    reach = {frame: extent([body for _, body in people], card.view, boxes) for frame, people, boxes in moments}
 
     def wanted() -> float:
         return sum(width(frame) for frame, *_ in moments) + BETWEEN * (len(moments) - 1)
@@ -85,9 +86,10 @@ def strip(axes: Axes, card: Card, corner: np.ndarray) -> None:
     def width(frame: int) -> float:
         return float(reach[frame][1][0] - reach[frame][0][0])
 
-    # People far apart would make everybody small.
+    # People far apart would make everybody small: what is wide and shows little that others do not has to go.
     while STRIP[2] / wanted() < LEAST_SCALE and len(moments) > 1:
-        moments.remove(max(moments, key=lambda moment: width(moment[0])))
+        tells = dict(zip((frame for frame, *_ in moments), card.telling([m[0] for m in moments]), strict=True))
+        moments.remove(max(moments, key=lambda moment: width(moment[0]) / max(tells[moment[0]], 1e-3)))
     tallest = max(reach[frame][1][1] - reach[frame][0][1] for frame, *_ in moments)
     scale = min(SCALE, STRIP[2] / wanted(), TALLEST / tallest)
     spare = (STRIP[2] - scale * wanted()) / len(moments)
@@ -191,23 +193,36 @@ def arrowhead(view: View, heading: float) -> np.ndarray:
     return np.array([0.10 * ahead, -0.05 * ahead + 0.062 * aside, -0.02 * ahead, -0.05 * ahead - 0.062 * aside])
 
 
+def ports(axes: Axes, card: Card, corner: np.ndarray, room: float) -> float:
+    """Where everybody comes from and goes to, those who do alike on one line; returns where the next line may be."""
+    alike: dict[str, list[int]] = {}
+    for role, own in enumerate(card.kind.roles):
+        way = f"{own.entry} → {own.exit}".replace("_", " ")
+        alike.setdefault(way if card.kind.people > MOST_LINES else f"{role} {way}", []).append(role)
+    left, y = corner
+    for way, roles in alike.items():
+        # Of a crowd not more dots than there is room for.
+        shown = roles[:MOST_LINES]
+        axes.scatter(left + 0.04 + 0.1 * np.arange(len(shown)), [y] * len(shown), s=20,
+                     c=[ROLES[role % len(ROLES)] for role in shown], zorder=6)  # fmt: skip
+        begin = 0.04 + 0.1 * len(shown)
+        text = f"{len(roles)} × {way}" if len(roles) > 1 else way.lstrip("0123456789 ")
+        fitted(axes, np.array([left + begin, y + 0.035]), text, room - begin, size=8, color=style.INK)
+        y += 0.18
+    return float(y)
+
+
 def words(axes: Axes, card: Card, corner: np.ndarray) -> None:
     """Ports, labels and faults, beside the map."""
     left, top = corner[0] + MAP[0] + MAP[2] + 0.14, corner[1] + MAP[1] + 0.07
     room = corner[0] + WIDE - 0.12 - left
-    step = min(0.18, 0.62 / card.kind.people)
-    for role, own in enumerate(card.kind.roles):
-        y = top + role * step
-        axes.scatter(left + 0.04, y, s=20, color=ROLES[role % len(ROLES)], zorder=6)
-        ports = f"{own.entry} → {own.exit}".replace("_", " ")
-        fitted(axes, np.array([left + 0.14, y + 0.035]), ports, room - 0.14, size=8, color=style.INK)
+    y = ports(axes, card, np.array([left, top]), room) + 0.10
     lines = [(", ".join(card.kind.labels).replace("_", " "), style.FAINT)]
     if card.kind.contacts:
         touches = "1 touch" if card.kind.contacts == 1 else f"{card.kind.contacts} touches"
         lines.insert(0, (touches, style.FAINT))
     if card.fault:
         lines.append((card.fault, FAULT))
-    y = top + step * card.kind.people + 0.10
     for text, colour in lines:
         for line in textwrap.wrap(text, 28)[:3]:
             axes.text(left, y, line, size=7, color=colour, va="center", zorder=6)

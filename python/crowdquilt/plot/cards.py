@@ -10,6 +10,8 @@ import numpy as np
 from crowdquilt._core import Connectivity, Kind, PatchSet, kind_boxes
 from crowdquilt.plot.figures import View, bodies_of
 
+UNLIKE = 0.2  # metres, mean over the body: more than one step is from the next
+
 
 @dataclass
 class Card:
@@ -72,18 +74,58 @@ class Card:
 
     @cached_property
     def moments(self) -> list[int]:
-        """Three to five frames that tell what happens."""
+        """Three to seven frames that tell what happens."""
         last = self.kind.frames - 1
         if self.kind.people == 1:
             wanted = np.linspace(0, last, int(np.clip(2 + round(last / 12), 3, 5))).round().astype(int).tolist()
         else:
             begin, end = self.core
-            wanted = [0, begin, (begin + end) // 2, end, last]
+            wanted = self.with_unlike([0, begin, (begin + end) // 2, end, last])
         chosen: list[int] = []
         for frame in wanted:
             if (not chosen or frame - chosen[-1] >= 4) and self.at(frame):
                 chosen.append(frame)
         return chosen
+
+    def with_unlike(self, chosen: list[int]) -> list[int]:
+        """The chosen frames, and up to two of poses that none of them shows: somebody sits, or bends down."""
+        away = np.min([self.poses_away(frame) for frame in chosen], axis=0)
+        found = set(chosen)
+        for _ in range(2):
+            frame = int(away.argmax())
+            if away[frame] > UNLIKE:
+                found.add(frame)
+                away = np.minimum(away, self.poses_away(frame))
+        return sorted(found)
+
+    def telling(self, frames: list[int]) -> list[float]:
+        """How far the poses at every frame are from those at the most alike of the others, metres; of one alone, 1."""
+        away = np.array([np.minimum(self.poses_away(frame)[frames], 1.0) for frame in frames])
+        return [float(np.delete(row, k).min(initial=1.0)) for k, row in enumerate(away)]
+
+    def poses_away(self, frame: int) -> np.ndarray:
+        """(frames,) how far the poses at all frames are from those at one, metres; of who is there and differs most."""
+        away = np.full(self.kind.frames, -np.inf)
+        for role, own in enumerate(self.kind.roles):
+            poses, here = self.poses[role], frame - own.begin
+            if 0 <= here < own.frames:
+                apart = np.linalg.norm(poses - poses[here], axis=-1).mean(axis=1)
+                span = slice(own.begin, own.begin + own.frames)
+                away[span] = np.maximum(away[span], apart)
+        return np.where(np.isfinite(away), away, np.inf)
+
+    @cached_property
+    def poses(self) -> list[np.ndarray]:
+        """Of every role: (frames, points, 3) the body seen from its place on the ground."""
+        return [seen_from(body, *path) for body, path in zip(self.bodies, self.paths, strict=True)]
+
+
+def seen_from(bodies: np.ndarray, points: np.ndarray, headings: np.ndarray) -> np.ndarray:
+    """The ends of capsules (frames, capsules, 7) as their paths' frames see them: left, up, ahead."""
+    ends = bodies[:, :, :6].reshape(len(bodies), -1, 3)
+    x, z = ends[..., 0] - points[:, None, 0], ends[..., 2] - points[:, None, 1]
+    sin, cos = np.sin(headings)[:, None], np.cos(headings)[:, None]
+    return np.stack([x * cos - z * sin, ends[..., 1], x * sin + z * cos], axis=-1)
 
 
 def cards(patches: PatchSet, found: Connectivity) -> list[Card]:

@@ -161,9 +161,14 @@ def spot(body: np.ndarray, view: View) -> np.ndarray:
     return np.asarray(view.project(middle)[0] + ellipse)
 
 
-def extent(bodies: list[np.ndarray], view: View) -> tuple[np.ndarray, np.ndarray]:
-    """The lower left and the upper right corner of some bodies on the sheet, metres."""
+def extent(
+    bodies: list[np.ndarray], view: View, boxes: Sequence[tuple[np.ndarray, np.ndarray]] = ()
+) -> tuple[np.ndarray, np.ndarray]:
+    """The lower left and the upper right corner of some bodies and boxes on the sheet, metres."""
     all_of = np.concatenate(bodies)
     ends, _ = view.project(all_of[:, :6].reshape(-1, 2, 3))
     reach = (all_of[:, 6] + OUTLINE)[:, None, None]
-    return (ends - reach).min(axis=(0, 1)), (ends + reach).max(axis=(0, 1))
+    corners = [(ends - reach).reshape(-1, 2), (ends + reach).reshape(-1, 2)]
+    corners += [polygon for size, place in boxes for polygon in box_faces(size, place, view).polygons]
+    points = np.concatenate(corners)
+    return points.min(axis=0), points.max(axis=0)
