@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import signal
 import subprocess
@@ -13,12 +14,15 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
+from rich.console import Console
 
 import crowdquilt as cq
 from conftest import crowdquilt
 from crowdquilt import plot, server
+from crowdquilt.cli.sets import label_table
+from crowdquilt.cli.tables import kind_table, ports_of, signed
 from crowdquilt.plot.cards import cards
-from crowdquilt.plot.figures import View, bodies_of, box_faces, limbs
+from crowdquilt.plot.figures import View, bodies_of, box_faces, extent, limbs
 
 HIPS, HEAD = 0, 13
 
@@ -127,7 +131,9 @@ def test_kinds_tells_and_draws(patches: Path, samples: cq.PatchSet, tmp_path: Pa
     sheet, groups = tmp_path / "sheet.png", tmp_path / "groups.svg"
     done = crowdquilt("kinds", patches, "--sheet", sheet, "--groups", groups)
     assert done.returncode == 0, done.stderr
-    assert "closed" in done.stdout and "walk_left" in done.stdout and f"{len(samples)} kinds" in done.stdout
+    own = sum(not kind.mirrored for kind in samples.kinds)
+    assert "closed" in done.stdout and "walk_left" in done.stdout and f"{own} kinds" in done.stdout
+    assert f"and {len(samples) - own} mirrored copies" in done.stdout
     assert sheet.stat().st_size > 100_000 and groups.stat().st_size > 5000
     told = json.loads(crowdquilt("kinds", patches, "--json").stdout)
     assert told["connectivity"]["closed"] is True
@@ -148,7 +154,8 @@ def test_kinds_are_measured(patches: Path, samples: cq.PatchSet) -> None:
         assert own.fastest >= own.speed - 1e-3
     assert found["pivot-90"].turn_deg == pytest.approx(-found["pivot-90-mirror"].turn_deg, abs=1e-3)
     assert found["handshake-stand"].words == ["stand", "together", "contact"]
-    assert found["sit"].words[-1] == "low" and found["carry-walk-cycle"].props == 1
+    assert found["sit"].words[-2:] == ["low", "prop"] and found["carry-walk-cycle"].props == 1
+    assert found["tie-shoe"].words == ["stand", "low"]
 
 
 def test_measures_are_told(patches: Path, samples: cq.PatchSet) -> None:
@@ -161,6 +168,28 @@ def test_measures_are_told(patches: Path, samples: cq.PatchSet) -> None:
     line = next(line for line in text.splitlines() if line.startswith("handshake-stand "))
     assert "stand together contact" in line and "stand → stand" in line
     assert "handshake-stand-mirror" not in text
+
+
+def test_tables_fit_into_narrow_terminals(samples: cq.PatchSet) -> None:
+    """Columns are left out whole, and named; figures are never cut."""
+
+    def told(width: int) -> str:
+        with (screen := Console(width=width, file=io.StringIO())).capture() as text:
+            screen.print(kind_table(samples, width))
+            screen.print(label_table(samples, width))
+        return text.get()
+
+    wide = told(160)
+    assert "ports" in wide and "wider" not in wide
+    for width in (60, 80, 100, 120):
+        text = told(width)
+        assert "…" not in text and max(map(len, text.splitlines())) <= width
+        assert "measured" in text and all(kind.name in text for kind in samples.kinds if not kind.mirrored)
+    assert "a wider terminal shows radius" in told(80)
+
+
+def test_turns_are_told_without_a_sign_of_nothing() -> None:
+    assert [signed(d) for d in (-0.4, 0.0, 0.4, -93.6, 88.5001)] == ["0°", "0°", "0°", "-94°", "+89°"]
 
 
 def test_a_picture_of_no_known_format_is_refused(patches: Path, tmp_path: Path) -> None:
@@ -179,6 +208,27 @@ def test_the_sheet_shows_every_kind_once_people_alone_first(samples: cq.PatchSet
     figure = plot.sheet(samples)
     texts = [t.get_text() for t in figure.axes[0].texts]
     assert sum("→" in text for text in texts) == sum(len(c.kind.roles) for c in shown)
+
+
+def test_the_sheet_has_room_for_boxes_and_shows_who_sits(samples: cq.PatchSet) -> None:
+    shown = {c.kind.name: c for c in cards(samples, cq.patch.connectivity(samples))}
+    card = shown["sit-talk"]
+    hips = [min(float(body[0, 1]) for _, body in card.at(frame)) for frame in card.moments]
+    assert min(hips) < 0.7, "a key pose of somebody who sits"
+    for frame in card.moments:
+        people, boxes = card.moment(frame)
+        low, high = extent([body for _, body in people], card.view, boxes)
+        corners = np.concatenate([p for size, place in boxes for p in box_faces(size, place, card.view).polygons])
+        assert boxes and (corners >= low).all() and (corners <= high).all()
+    # Of who stays on their feet the regular moments tell all.
+    assert shown["handshake-stand"].moments == [0, 30, 60]
+
+
+def test_people_who_come_and_go_alike_share_a_line(samples: cq.PatchSet) -> None:
+    trio = next(k for k in samples.kinds if k.name == "trio-talk-stand")
+    assert ports_of(trio) == "3 × stand → stand"
+    walk = next(k for k in samples.kinds if k.name == "trio-talk-walk")
+    assert ports_of(walk).count("×") <= 1 and "→" in ports_of(walk)
 
 
 def test_pictures_of_one_set_are_the_same_to_the_byte(trap: cq.PatchSet, tmp_path: Path) -> None:

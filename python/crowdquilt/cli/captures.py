@@ -13,10 +13,11 @@ from crowdquilt import inspection, motion, patch, samples
 from crowdquilt._core import CrowdquiltError
 from crowdquilt.cli.app import app, console, example, expect_picture
 from crowdquilt.cli.progress import make_set
-from crowdquilt.cli.tables import facts, kind_table, take_table
+from crowdquilt.cli.tables import facts, kind_table, notes_of, take_table
 from crowdquilt.outputs import whole_folder
 from crowdquilt.plot.capture import capture as draw
 from crowdquilt.plot.events import events as draw_events
+from crowdquilt.plot.sheet import sheet as draw_sheet
 
 
 @app.command("samples", epilog=example("samples -o out/samples"))
@@ -131,6 +132,7 @@ def patches(
     plot: Annotated[
         Path | None, typer.Option(help="Draw why something is an event: what was measured, thresholds, what was found.")
     ] = None,
+    sheet: Annotated[Path | None, typer.Option(help="Draw every kind: a contact sheet (.png, .svg, .pdf).")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Do not list takes and kinds.")] = False,
 ) -> None:
@@ -148,18 +150,20 @@ def patches(
         "near": near,
         "compose": compose,
     }
-    expect_picture(plot)
+    expect_picture(plot, sheet)
     try:
         made = make_set(source, captures, **{name: value for name, value in options.items() if value is not None})
     except ValueError as error:
         raise typer.BadParameter(str(error)) from None
     if not len(made.set):
-        reasons = [f"{take.name}: {note}" for take in made.takes for note in take.notes]
+        reasons = [f"{names}: {note}" for names, note in notes_of(made.takes)]
         raise CrowdquiltError(f"{source}: nothing to make patches of: {'; '.join(reasons)}")
     out.parent.mkdir(parents=True, exist_ok=True)
     made.set.save(out)
     if plot is not None:
         draw_events(made, plot)
+    if sheet is not None:
+        draw_sheet(made.set, sheet)
     if takes is not None:
         with whole_folder(takes) as part:
             for name, text in made.take_files():
@@ -169,10 +173,9 @@ def patches(
         return
     if not quiet:
         console.print(take_table(made.takes))
-        console.print(kind_table(made.set))
-    for take in made.takes:
-        for note in take.notes:
-            console.print(f"[yellow]{escape(take.name)}[/yellow] {escape(note)}", soft_wrap=True)
+        console.print(kind_table(made.set, console.width))
+    for names, note in notes_of(made.takes):
+        console.print(f"[yellow]{escape(names)}[/yellow]: {escape(note)}", soft_wrap=True)
     found = set_facts(made)
     console.print(
         f"{out}: {found['kinds']} kinds and their mirror images, {found['single_person_kinds']} of one person, "

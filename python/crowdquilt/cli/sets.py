@@ -15,7 +15,7 @@ from rich.table import Table
 from crowdquilt import patch
 from crowdquilt._core import Connectivity, Measures, PatchSet
 from crowdquilt.cli.app import app, console, example, expect_picture
-from crowdquilt.cli.tables import kind_table
+from crowdquilt.cli.tables import Column, fitted, kind_table, signed
 
 
 @app.command(epilog=example("kinds people.patches", "kinds people.patches --sheet sheet.png --groups groups.png"))
@@ -37,7 +37,7 @@ def kinds(
         print(json.dumps(summary(made, found), indent=2))
     else:
         if each:
-            console.print(kind_table(made))
+            console.print(kind_table(made, console.width))
             console.print()
         tell(made, found)
     if sheet is None and groups is None:
@@ -53,9 +53,13 @@ def kinds(
 
 def tell(patches: PatchSet, found: Connectivity) -> None:
     """Print kinds by label, groups with what leads in and out, and the advice."""
-    console.print(label_table(patches))
+    console.print(label_table(patches, console.width))
+    mirrored = sum(kind.mirrored for kind in patches.kinds)
+    if mirrored:
+        console.print(f"[dim]and {mirrored} mirrored copies, which are counted from here on[/dim]")
     console.print()
     console.print(group_table(found))
+    console.print("[dim]in, out: kinds of one person + roles among several[/dim]", soft_wrap=True)
     console.print()
     if found.closed:
         console.print("[green]✓[/green] closed: everybody can go on from everywhere")
@@ -66,31 +70,35 @@ def tell(patches: PatchSet, found: Connectivity) -> None:
 
 
 def by_label(patches: PatchSet) -> dict[str, list[Measures]]:
-    """What is measured of the kinds of each first label, the commonest label first; mirrored copies are counted."""
+    """What is measured of the kinds of each first label, the commonest label first; mirrored copies are left out."""
     measured: dict[str, list[Measures]] = {}
     for kind, found in zip(patches.kinds, patch.measures(patches), strict=True):
+        if kind.mirrored:
+            continue
         measured.setdefault(kind.labels[0] if kind.labels else "no label", []).append(found)
     return dict(sorted(measured.items(), key=lambda item: (-len(item[1]), item[0])))
 
 
-def label_table(patches: PatchSet) -> Table:
-    """Kinds by their first label: how many of each number of people, and what is measured of them."""
-    people = sorted({kind.people for kind in patches.kinds})
-    table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0), show_footer=True, footer_style="dim")
-    table.add_column("label", footer=f"{len(patches)} kinds", no_wrap=True)
-    for n in people:
-        total = sum(kind.people == n for kind in patches.kinds)
-        table.add_column("alone" if n == 1 else f"{n} people", justify="right", footer=str(total))
-    for title in ("seconds", "m/s", "turn", "radius"):
-        table.add_column(title, justify="right", no_wrap=True)
-    table.add_column("measured")
-    for label, found in by_label(patches).items():
-        counts = (sum(m.people == n for m in found) for n in people)
-        turn = f"{max(abs(m.turn_deg) for m in found):.0f}°"
-        ranges = (both_ends(m.seconds for m in found), both_ends(m.speed for m in found), turn)
-        radius = both_ends(m.radius for m in found)
-        table.add_row(escape(label), *(str(n or "") for n in counts), *ranges, radius, " ".join(common_words(found)))
-    return table
+def label_table(patches: PatchSet, width: int) -> Table:
+    """Kinds by their first label: how many of each number of people, and what is measured of them; no mirrored ones."""
+    rows = by_label(patches)
+    every = [m for found in rows.values() for m in found]
+
+    def count(found: list[Measures], people: int) -> int:
+        return sum(m.people == people for m in found)
+
+    columns = [Column("label", list(rows), words=True, footer=f"{len(every)} kinds")]
+    for n in sorted({m.people for m in every}):
+        counts = [str(count(found, n) or "") for found in rows.values()]
+        columns.append(Column("alone" if n == 1 else f"{n} people", counts, footer=str(count(every, n))))
+    columns += [
+        Column("seconds", [both_ends(m.seconds for m in found) for found in rows.values()]),
+        Column("m/s", [both_ends(m.speed for m in found) for found in rows.values()]),
+        Column("turn to", [f"{max(abs(m.turn_deg) for m in found):.0f}°" for found in rows.values()]),
+        Column("radius", [both_ends(m.radius for m in found) for found in rows.values()]),
+        Column("measured", [" ".join(common_words(found)) for found in rows.values()], words=True, wraps=True),
+    ]
+    return fitted(columns, ("radius", "turn to", "m/s", "seconds"), width)
 
 
 def common_words(found: list[Measures]) -> list[str]:
@@ -118,7 +126,7 @@ def group_table(found: Connectivity) -> Table:
         s = group.steering
         ranges = ("", "", "")
         if s is not None:
-            ranges = (f"{s.turn_deg[0]:+.0f}° {s.turn_deg[1]:+.0f}°", span(s.speed), span(s.secs))
+            ranges = (f"{signed(s.turn_deg[0])} {signed(s.turn_deg[1])}", span(s.speed), span(s.secs))
         table.add_row(name, *ways, *ranges)
     return table
 

@@ -15,6 +15,7 @@ FPS = 30.0
 FAR = 0.3  # metres beyond which gaps are not told apart
 KINDS = {"contact": style.TOGETHER[0], "proximity": style.TOGETHER[2], "synchronicity": style.TOGETHER[1]}
 QUIET = "#b9bbb8"
+ALONE = "no take of several people was looked at"
 ROW = 0.17  # inches
 LEAST = 1e-3  # variations and ratios below are drawn here
 ROWS = 40  # takes that are listed at most
@@ -35,7 +36,7 @@ def events(made: Made, path: str | Path | None = None, dpi: int = 150) -> Figure
     tall = page.get_figheight()
     counts = {kind: sum(sign[0] == kind for take in takes for sign in take.signs) for kind in KINDS}
     told = ", ".join(f"{count} × {kind}" for kind, count in counts.items())
-    looked = f"{len(takes)} takes nobody annotated, {len(shared)} of several people: {told}"
+    looked = f"{len(takes)} takes that nobody annotated, {len(shared)} of several people: {told}"
     style.heading(page, "What makes an event", looked)
 
     def place(column: int, row: int) -> Axes:
@@ -73,7 +74,9 @@ def gathered(takes: list[TakeSignals], name: str, kind: str) -> tuple[np.ndarray
 def draw_gaps(axes: Axes, takes: list[TakeSignals], limit: float) -> None:
     """How near bodies are to each other: below the threshold they touch."""
     gaps, held = gathered(takes, "gap", "contact")
-    title(axes, "Contact: gap between two bodies' surfaces, cm; grey below: they slide past")
+    title(axes, "Contact: gap between two bodies, cm; grey below: they slide past")
+    if not len(gaps):
+        return nothing(axes, ALONE)
     near = gaps < FAR - 1e-6
     if not near.any():
         return nothing(axes, "nobody comes within 30 cm of anybody")
@@ -90,7 +93,7 @@ def draw_variation(axes: Axes, takes: list[TakeSignals], limits: dict[str, float
     variation = np.concatenate([*(v for take in takes for v in take.variation), np.empty(0)])
     travels = np.concatenate([*(t for take in takes for t in take.travels), np.empty(0, dtype=bool)])
     if not len(variation):
-        return nothing(axes, "no take was looked at")
+        return nothing(axes, "all takes say themselves where to cut: none was looked at")
     shown = np.maximum(variation, LEAST)
     bins = np.geomspace(LEAST, max(shown.max(), 10.0) * 1.01, 64)
     sides = (("in_place", ~travels, "#8659a3", "in place"), ("travelling", travels, "#4f8f54", "travelling"))
@@ -117,7 +120,7 @@ def draw_proximity(axes: Axes, takes: list[TakeSignals], near: float) -> None:
     reaction, _ = gathered(takes, "reaction", "proximity")
     title(axes, "Proximity: distance of the hips, m, and reaction, × threshold of acting")
     if not len(apart):
-        return nothing(axes, "no take of two people")
+        return nothing(axes, ALONE)
     far = max(4.0, 2.5 * near)
     # Who is even farther apart tells nothing; many dots are thinned alike.
     chosen = np.flatnonzero(apart < far)
@@ -138,6 +141,8 @@ def draw_synchronicity(axes: Axes, takes: list[TakeSignals]) -> None:
     """How much two people act at once, in view of each other."""
     values, held = gathered(takes, "synchronicity", "synchronicity")
     title(axes, "Synchronicity with gaze (eq. 5), × threshold")
+    if not len(values):
+        return nothing(axes, ALONE)
     acting = values > 0
     if not acting.any():
         return nothing(axes, "never do two people act at once in sight of each other")
@@ -157,7 +162,7 @@ def draw_times(axes: Axes, takes: list[TakeSignals], count: int) -> None:
     """A line for every take of several people: when what was found."""
     dress(axes)
     if not takes:
-        return nothing(axes, "no take of several people")
+        return nothing(axes, ALONE)
     for row, take in enumerate(takes):
         last = max((len(v) for v in take.variation), default=0) / FPS
         axes.plot([0, last], [row, row], color=style.HAIR, lw=1.0, zorder=1)
