@@ -20,7 +20,7 @@ describe("the page of a patch set", () => {
   it("lists kinds without mirrored copies, and plays the first in a loop", async () => {
     await open("");
     expect(await site.page.locator(".kinds li").count()).toBe(1);
-    expect(await site.page.textContent(".found")).toBe("1 of 2 kinds");
+    expect(await site.page.textContent(".found")).toBe("1 kind");
     expect(await shownKind()).toBe("step");
     expect(await site.page.textContent(".roles")).toContain("stand → walk left");
     expect(await site.page.locator(".stats").count()).toBe(0);
@@ -36,7 +36,9 @@ describe("the page of a patch set", () => {
     await open("paused=1");
     await site.page.click("text=Mirrored");
     expect(await site.page.locator(".kinds li").count()).toBe(2);
+    expect(await site.page.textContent(".found")).toBe("2 kinds");
     await site.page.fill(".search", "friendly");
+    expect(await site.page.textContent(".found")).toBe("1 of 2 kinds");
     expect(await site.page.locator(".kinds .name").allTextContents()).toEqual(["meet"]);
     await site.page.fill(".search", "");
     await site.page.locator(".set .row button", { hasText: /^1$/ }).click();

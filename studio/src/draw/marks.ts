@@ -3,7 +3,7 @@
 import { Group, Mesh, MeshBasicMaterial, RingGeometry, type Sprite } from "three";
 import type { Crowd, Vec3 } from "../crowd/model";
 import { Pose, samplePose, sampleRoot } from "../crowd/sample";
-import type { BodyPart, PatchSet, SetKind } from "../set/model";
+import { type BodyPart, type PatchSet, type SetKind, words } from "../set/model";
 import { partOf } from "../set/parts";
 import { roleColor } from "./palette";
 import { halo } from "./signs";
@@ -65,8 +65,4 @@ function ring(color: string): Mesh {
   const mesh = new Mesh(new RingGeometry(0.27, 0.305, 48).rotateX(-Math.PI / 2), material);
   mesh.renderOrder = 1.8;
   return mesh;
-}
-
-function words(group: string): string {
-  return group.replaceAll("_", " ");
 }

@@ -11,6 +11,7 @@ const CORE_WIDTH = 0.055;
 const STEP = 0.03;
 /** From a port to its label, metres. */
 const LABEL_AWAY = 0.4;
+const LABEL_ASIDE = 0.3;
 
 export class Way {
   private readonly points: Vec2[] = [];
@@ -77,12 +78,13 @@ export class Way {
     return out;
   }
 
-  /** The name of a pose group: behind an entry, ahead of an exit. */
+  /** The name of a pose group: behind an entry; ahead of an exit and to its left, or those of two face to face would meet. */
   label(frame: number, text: string, color: string): Sprite {
     const made = sign(text, color);
     const [sin, cos] = [Math.sin(this.headings[frame]), Math.cos(this.headings[frame])];
-    const away = frame === 0 ? -LABEL_AWAY : LABEL_AWAY + 0.18;
-    made.position.set(this.points[frame][0] + sin * away, 0.1, this.points[frame][1] + cos * away);
+    const [ahead, left] = frame === 0 ? [-LABEL_AWAY, 0] : [LABEL_AWAY, LABEL_ASIDE];
+    const [x, z] = this.points[frame];
+    made.position.set(x + sin * ahead + cos * left, 0.1, z + cos * ahead - sin * left);
     return made;
   }
 

@@ -3,7 +3,7 @@
 import { roleColor } from "../draw/palette";
 import { clockText, type Player } from "../play/player";
 import { measuresOf } from "../set/measure";
-import type { PatchSet, SetKind } from "../set/model";
+import { labelsOf, type PatchSet, type SetKind, words } from "../set/model";
 import type { Store } from "../store";
 import { button, el, pairs } from "./dom";
 
@@ -24,7 +24,7 @@ export function installKind(
     const secs = (frame: number) => (frame / set.fps).toFixed(1);
     panel.replaceChildren(
       el("h2", "", [kind.name]),
-      el("p", "quiet", [kind.labels.join(", ")]),
+      el("p", "quiet", [labelsOf(kind)]),
       el(
         "ol",
         "roles",
@@ -39,14 +39,14 @@ export function installKind(
 
 function ports(set: PatchSet, kind: SetKind, role: number): HTMLElement {
   const { entry, exit, begin, frames } = kind.roles[role];
-  const name = (group: number) => plain(set.groups[group]);
+  const name = (group: number) => words(set.groups[group]);
   const time = `${(begin / set.fps).toFixed(1)}–${((begin + frames - 1) / set.fps).toFixed(1)} s`;
   return el("li", "", [dot(role), el("span", "name", [`${name(entry)} → ${name(exit)}`]), el("span", "time", [time])]);
 }
 
 function facts(set: PatchSet, kind: SetKind, secs: (frame: number) => string): HTMLElement {
   const { core, mirrored } = kind;
-  const rows: [string, string][] = core ? [["Together", `${secs(core[0])}–${secs(core[1])} s`]] : [];
+  const rows: [string, string][] = core ? [["Together", `${[...new Set(core.map(secs))].join("–")} s`]] : [];
   if (mirrored) rows.push(["Mirrored", "a copy seen in a mirror"]);
   const { speed, fastest, radius, turnDeg, words } = measuresOf(set, kind);
   rows.push(
@@ -66,10 +66,10 @@ function turned(degrees: number): string {
 /** Who touches whom, holds what and sits where, in the order of time; to go there. Nothing if nobody does. */
 function deeds(set: PatchSet, { contacts, props }: SetKind, player: Player): HTMLElement | string {
   const found: Deed[] = [
-    ...contacts.map(({ a, b, begin }): Deed => [begin, [dot(a.role), plain(a.part), dot(b.role), plain(b.part)]]),
+    ...contacts.map(({ a, b, begin }): Deed => [begin, [dot(a.role), words(a.part), dot(b.role), words(b.part)]]),
     ...props.flatMap(({ name, holds, sat }) => [
-      ...holds.map(({ role, begin }): Deed => [begin, [dot(role), `holds ${plain(name)}`]]),
-      ...sat.map(({ role, begin }): Deed => [begin, [dot(role), `sits on ${plain(name)}`]]),
+      ...holds.map(({ role, begin }): Deed => [begin, [dot(role), `holds ${words(name)}`]]),
+      ...sat.map(({ role, begin }): Deed => [begin, [dot(role), `sits on ${words(name)}`]]),
     ]),
   ];
   if (found.length === 0) return "";
@@ -77,23 +77,19 @@ function deeds(set: PatchSet, { contacts, props }: SetKind, player: Player): HTM
   return el(
     "ol",
     "touches",
-    found.map(([begin, words]) => deed(begin / set.fps, words, player)),
+    found.map(([begin, said]) => deed(begin / set.fps, said, player)),
   );
 }
 
-type Deed = [begin: number, words: (Node | string)[]];
+type Deed = [begin: number, said: (Node | string)[]];
 
-function deed(secs: number, words: Deed[1], player: Player): HTMLElement {
+function deed(secs: number, said: Deed[1], player: Player): HTMLElement {
   const made = button("", "Go there", () => player.seek(secs), "touch");
   made.append(
     el("span", "time", [clockText(secs)]),
-    ...words.map((w) => (typeof w === "string" ? el("span", "", [w]) : w)),
+    ...said.map((w) => (typeof w === "string" ? el("span", "", [w]) : w)),
   );
   return el("li", "", [made]);
-}
-
-function plain(name: string): string {
-  return name.replaceAll("_", " ");
 }
 
 function dot(role: number): HTMLElement {

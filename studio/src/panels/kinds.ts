@@ -2,7 +2,7 @@
 
 import { roleColor } from "../draw/palette";
 import { listed } from "../set/list";
-import { type PatchSet, seconds } from "../set/model";
+import { labelsOf, type PatchSet, seconds } from "../set/model";
 import { MANY, type Store } from "../store";
 import { button, choice, el, headed } from "./dom";
 
@@ -39,7 +39,7 @@ export function installKinds(parent: HTMLElement, store: Store, set: PatchSet): 
     const filter = store.get("filter");
     const shown = listed(set, filter);
     list.replaceChildren(...shown.map((index) => entries[index]));
-    found.textContent = `${shown.length} of ${set.kinds.length} kinds`;
+    found.textContent = counted(shown.length, set.kinds.filter((kind) => filter.mirrored || !kind.mirrored).length);
     people.mark(String(filter.people));
     mirrored.setAttribute("aria-pressed", String(filter.mirrored));
   };
@@ -52,6 +52,11 @@ export function installKinds(parent: HTMLElement, store: Store, set: PatchSet): 
   show();
 }
 
+function counted(shown: number, all: number): string {
+  const kinds = all === 1 ? "kind" : "kinds";
+  return shown === all ? `${all} ${kinds}` : `${shown} of ${all} ${kinds}`;
+}
+
 function entry(set: PatchSet, index: number, press: () => void): HTMLElement {
   const kind = set.kinds[index];
   const dots = kind.roles.map((_, role) => el("i", "dot", [], { style: `background:${roleColor(role)}` }));
@@ -62,7 +67,7 @@ function entry(set: PatchSet, index: number, press: () => void): HTMLElement {
       el("span", "name", [kind.name]),
       el("span", "time", [`${seconds(set, kind).toFixed(1)} s`]),
       el("span", "dots", dots),
-      el("span", "labels", [kind.labels.join(", ")]),
+      el("span", "labels", [labelsOf(kind)]),
     ],
     { type: "button", title: kind.name },
   );

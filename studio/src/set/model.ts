@@ -88,6 +88,15 @@ export interface PatchSet {
   rotations: Int16Array;
 }
 
+/** A name or a label as people write it. */
+export function words(name: string): string {
+  return name.replaceAll("_", " ");
+}
+
+export function labelsOf(kind: SetKind): string {
+  return words(kind.labels.join(", "));
+}
+
 /** Length of a kind in seconds. */
 export function seconds(set: PatchSet, kind: SetKind): number {
   return kind.lastFrame / set.fps;
