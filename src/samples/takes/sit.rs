@@ -21,11 +21,11 @@ const HIPS_SEATED: f32 = CRATE[1] + 0.13;
 /// Hips of somebody who stands, as high as the samples have them.
 const HIPS_STANDING: f32 = 0.928;
 /// Seconds from standing to sitting, and from there to standing.
-const DOWN: f32 = 1.35;
-const UP: f32 = 1.45;
+const DOWN: f32 = 1.6;
+const UP: f32 = 1.65;
 
 pub(super) fn scenes() -> Vec<Scene> {
-    vec![sit("sit", 1.2, rest), sit("sit-look", 2.9, look_about), sit_and_go(), sit_and_talk()]
+    vec![sit("sit", 1.2, rest), sit("sit-look", 2.5, look_about), sit_and_go(), sit_and_talk()]
 }
 
 /// Sits down from the cursor on, stays for some seconds, gets up; when seated and when standing again.
@@ -89,7 +89,7 @@ fn sit_and_go() -> Scene {
     let mut a = Actor::standing();
     a.stand(20);
     let (from, t) = (a.now, a.t());
-    let [down, up, end] = seat(&mut a, 1.5);
+    let [down, up, end] = seat(&mut a, 1.1);
     a.look([down, down + 0.5, up + 0.5, end], Sight::Beside(Vec3::new(-1.8, 1.3, 2.0)));
     a.wait((end * 30.0).ceil() as i32);
     a.start(Right, NORMAL, -70f32.to_radians());
@@ -113,10 +113,13 @@ fn sit_and_talk() -> Scene {
     for (i, a) in actors.iter_mut().enumerate() {
         let late = 6 * i as i32;
         a.wait(late);
-        let [down, up, end] = seat(a, 2.7);
+        let [down, up, end] = seat(a, 3.6);
         a.look([0.0, 0.4, end - 0.4, end], Sight::Person(1 - i));
-        gesticulate(a, Right, down + [0.1, 1.0][i], 1);
-        nod(a, down + [1.7, 0.3][i]);
+        // The one speaks, the other listens.
+        if i == 0 {
+            gesticulate(a, Right, down + 0.9, 1);
+        }
+        nod(a, down + [2.7, 1.6][i]);
         seats.push([t + late as f32 / 30.0 + down, t + late as f32 / 30.0 + up]);
         a.stand((end * 30.0).ceil() as i32 + 3);
         roles.push((i, from, a.now));
