@@ -39,3 +39,10 @@ def test_a_fault_is_told_with_file_and_line(captures: Path, tmp_path: Path) -> N
     assert "bad.compose.toml: line 16" in done.stderr and "deep in ann" in done.stderr
     with pytest.raises(cq.CrowdquiltError, match="line 16"):
         cq.patch.make(captures, compose=[bad])
+
+
+def test_a_folder_without_compose_files_is_refused(captures: Path, tmp_path: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    done = crowdquilt("patches", captures, "--compose", tmp_path / "empty", "-o", tmp_path / "out.patches")
+    assert done.returncode == 2 and "expected files that end in .compose.toml, found none" in done.stderr
+    assert not (tmp_path / "out.patches").exists()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import signal
 import subprocess
@@ -14,13 +13,10 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
-from rich.console import Console
 
 import crowdquilt as cq
 from conftest import crowdquilt
 from crowdquilt import plot, server
-from crowdquilt.cli.sets import label_table
-from crowdquilt.cli.tables import kind_table, ports_of, signed
 from crowdquilt.plot.cards import cards
 from crowdquilt.plot.figures import View, bodies_of, box_faces, extent, limbs
 
@@ -170,28 +166,6 @@ def test_measures_are_told(patches: Path, samples: cq.PatchSet) -> None:
     assert "handshake-stand-mirror" not in text
 
 
-def test_tables_fit_into_narrow_terminals(samples: cq.PatchSet) -> None:
-    """Columns are left out whole, and named; figures are never cut."""
-
-    def told(width: int) -> str:
-        with (screen := Console(width=width, file=io.StringIO())).capture() as text:
-            screen.print(kind_table(samples, width))
-            screen.print(label_table(samples, width))
-        return text.get()
-
-    wide = told(160)
-    assert "ports" in wide and "wider" not in wide
-    for width in (60, 80, 100, 120):
-        text = told(width)
-        assert "…" not in text and max(map(len, text.splitlines())) <= width
-        assert "measured" in text and all(kind.name in text for kind in samples.kinds if not kind.mirrored)
-    assert "a wider terminal shows radius" in told(80)
-
-
-def test_turns_are_told_without_a_sign_of_nothing() -> None:
-    assert [signed(d) for d in (-0.4, 0.0, 0.4, -93.6, 88.5001)] == ["0°", "0°", "0°", "-94°", "+89°"]
-
-
 def test_a_picture_of_no_known_format_is_refused(patches: Path, tmp_path: Path) -> None:
     done = crowdquilt("kinds", patches, "--sheet", tmp_path / "sheet.xyz")
     assert done.returncode == 2 and "expected a picture" in done.stderr
@@ -222,13 +196,6 @@ def test_the_sheet_has_room_for_boxes_and_shows_who_sits(samples: cq.PatchSet) -
         assert boxes and (corners >= low).all() and (corners <= high).all()
     # Of who stays on their feet the regular moments tell all.
     assert shown["handshake-stand"].moments == [0, 30, 60]
-
-
-def test_people_who_come_and_go_alike_share_a_line(samples: cq.PatchSet) -> None:
-    trio = next(k for k in samples.kinds if k.name == "trio-talk-stand")
-    assert ports_of(trio) == "3 × stand → stand"
-    walk = next(k for k in samples.kinds if k.name == "trio-talk-walk")
-    assert ports_of(walk).count("×") <= 1 and "→" in ports_of(walk)
 
 
 def test_pictures_of_one_set_are_the_same_to_the_byte(trap: cq.PatchSet, tmp_path: Path) -> None:

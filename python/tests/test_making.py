@@ -174,6 +174,15 @@ def test_nothing_to_explain_is_a_picture_too(captures: Path, tmp_path: Path) -> 
     assert told.count("no take of several people was looked at") == 4 == len(told) - 1
 
 
+def test_patches_draws_what_it_made(bare: Path, tmp_path: Path) -> None:
+    sheet = tmp_path / "sheet.png"
+    done = crowdquilt("patches", bare / "walk-normal-a.bvh", "-o", tmp_path / "x.patches", "--sheet", sheet)
+    assert done.returncode == 0, done.stderr
+    assert sheet.stat().st_size > 20_000
+    done = crowdquilt("patches", bare, "-o", tmp_path / "y.patches", "--sheet", tmp_path / "sheet.doc")
+    assert done.returncode == 2 and "expected a picture" in done.stderr and not (tmp_path / "y.patches").exists()
+
+
 def test_a_capture_alone_gives_patches_of_one_person(bare: Path, tmp_path: Path) -> None:
     facts, code, said = make(bare / "walk-normal-a.bvh", tmp_path / "x.patches")
     assert code == 0, said

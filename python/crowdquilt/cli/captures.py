@@ -151,6 +151,9 @@ def patches(
         "compose": compose,
     }
     expect_picture(plot, sheet)
+    for folder in compose or []:
+        if folder.is_dir() and not any(folder.glob("*.compose.toml")):
+            raise CrowdquiltError(f"{folder}: expected files that end in .compose.toml, found none")
     try:
         made = make_set(source, captures, **{name: value for name, value in options.items() if value is not None})
     except ValueError as error:
