@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch
 from matplotlib.path import Path
 
-from crowdquilt._core import Connectivity, PatchSet, connectivity
+from crowdquilt._core import Connectivity, PatchSet, connectivity, kind_boxes
 from crowdquilt.plot import style
 from crowdquilt.plot.figures import View, bodies_of, draw_people
 
@@ -25,6 +25,10 @@ NODE = 0.74  # inches
 APART = 3.1  # inches between neighbours
 FIGURE = 0.50  # inches per metre
 PORTS = 40  # that are looked at for a typical pose
+HANDS = [14, 15]  # capsules of a body
+IN_HANDS = 0.35  # metres from the middle of both hands to the middle of a box
+# A body, and the sizes and places of boxes.
+Posed = tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray]]]
 ORDERED = 7  # at most so many groups are put in the best order, by trying all
 
 
@@ -67,7 +71,9 @@ def headline(page: Figure, found: Connectivity) -> None:
     style.heading(page, "Pose groups", f"This set is {state}", left)
     tall = page.get_figheight()
     right = 1 - left
-    for row, (text, colour) in enumerate([("kinds of one person", ALONE), ("+ roles among several people", TOGETHER)]):
+    for row, (text, colour) in enumerate(
+        [("kinds of one person, mirrored ones too", ALONE), ("+ roles among several people", TOGETHER)]
+    ):
         page.text(right, 1 - (0.44 + 0.22 * row) / tall, text, size=9.5, color=colour, ha="right", va="baseline")
 
 
@@ -104,18 +110,19 @@ def node(axes: Axes, patches: PatchSet, name: str, place: np.ndarray, fault: boo
     edge = FAULT if fault else style.INK
     axes.add_patch(Circle((place[0], place[1]), NODE, facecolor=style.FLOOR, edgecolor=edge, linewidth=1.8, zorder=4))
     lines = textwrap.wrap(name.replace("_", " "), 11)[:2]
-    body = typical(patches, name)
-    if body is not None:
+    found = typical(patches, name)
+    if found is not None:
         feet = place + [0, -0.34 + 0.08 * (len(lines) - 1)]
-        draw_people(axes, [(body, BODY)], View.beside(np.radians(30)), feet, (FIGURE, FIGURE), zorder=6)
+        body, boxes = found
+        draw_people(axes, [(body, BODY)], View.beside(np.radians(30)), feet, (FIGURE, FIGURE), zorder=6, boxes=boxes)
     for line, text in enumerate(lines):
         y = place[1] - 0.52 + 0.08 * (len(lines) - 1) - 0.135 * line
         axes.text(place[0], y, text, size=9.5, weight="bold", color=edge, ha="center", va="center", zorder=7)
 
 
-def typical(patches: PatchSet, group: str) -> np.ndarray | None:
-    """The body of a group's most typical port, standing at the origin and heading along z; where there are kinds of one
-    person, of one of them. O(ports x capsules)."""
+def typical(patches: PatchSet, group: str) -> Posed | None:
+    """The body of a group's most typical port and what it holds, standing at the origin and heading along z; where there
+    are kinds of one person, of one of them. O(ports x capsules)."""
     ports = [
         (kind.people > 1, index, number, frame)
         for index, kind in enumerate(patches.kinds)
@@ -126,21 +133,41 @@ def typical(patches: PatchSet, group: str) -> np.ndarray | None:
     if not ports:
         return None
     fewest = min(port[0] for port in ports)
-    bodies = np.array([posed(patches, *port[1:]) for port in ports if port[0] == fewest][:PORTS])
+    found = [posed(patches, *port[1:]) for port in ports if port[0] == fewest][:PORTS]
+    bodies = np.array([body for body, _ in found])
     apart = np.linalg.norm(bodies - np.median(bodies, axis=0), axis=(1, 2))
-    return np.asarray(bodies[np.argmin(apart)])
+    return found[int(np.argmin(apart))]
 
 
-def posed(patches: PatchSet, kind: int, role: int, frame: int) -> np.ndarray:
-    """A body moved to the origin and turned to head along z."""
+def posed(patches: PatchSet, kind: int, role: int, frame: int) -> Posed:
+    """A body moved to the origin and turned to head along z, and the boxes between its hands."""
     body = bodies_of(patches, kind, role)[frame].astype(float)
     heading = float(patches.path(kind, role)[1][frame])
-    sin, cos = np.sin(heading), np.cos(heading)
     hips = body[0, [0, 2]].copy()
-    for x, z in ((0, 2), (3, 5)):
-        aside, ahead = body[:, x] - hips[0], body[:, z] - hips[1]
-        body[:, x], body[:, z] = aside * cos - ahead * sin, aside * sin + ahead * cos
-    return np.asarray(body)
+
+    def home(places: np.ndarray) -> np.ndarray:
+        """Ground points seen from the body."""
+        aside, ahead = (places - hips).T
+        sin, cos = np.sin(heading), np.cos(heading)
+        return np.stack([aside * cos - ahead * sin, aside * sin + ahead * cos], axis=-1)
+
+    own = patches.kinds[kind].roles[role]
+    clock = own.begin + (frame if frame >= 0 else own.frames + frame)
+    held = []
+    for size, begin, places in kind_boxes(patches, kind):
+        if 0 <= clock - begin < len(places) and between_hands(body, places[clock - begin][:3]):
+            x, y, z, turn = places[clock - begin].astype(float)
+            (x, z), turn = home(np.array([[x, z]]))[0], turn - heading
+            held.append((np.array(size), np.array([x, y, z, turn])))
+    for ends in ([0, 2], [3, 5]):
+        body[:, ends] = home(body[:, ends])
+    return body, held
+
+
+def between_hands(body: np.ndarray, place: np.ndarray) -> bool:
+    """Whether the middle of a box is where both hands are."""
+    hands = body[HANDS, 3:6].mean(axis=0)
+    return bool(np.linalg.norm(place - hands) < IN_HANDS)
 
 
 def links(axes: Axes, found: Connectivity, where: dict[str, np.ndarray], faulty: set[str]) -> None:
