@@ -19,6 +19,7 @@ from conftest import crowdquilt
 from crowdquilt import plot, server
 from crowdquilt.plot.cards import cards
 from crowdquilt.plot.figures import View, bodies_of, box_faces, extent, limbs
+from crowdquilt.plot.groups import typical
 
 HIPS, HEAD = 0, 13
 
@@ -202,6 +203,17 @@ def test_pictures_of_one_set_are_the_same_to_the_byte(trap: cq.PatchSet, tmp_pat
     for name in ("a.png", "b.png"):
         plot.groups(trap, tmp_path / name)
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+def test_the_picture_of_a_group_shows_what_it_holds(samples: cq.PatchSet) -> None:
+    for group in samples.groups:
+        found = typical(samples, group)
+        assert found is not None
+        body, boxes = found
+        assert np.allclose(body[0, [0, 2]], 0, atol=1e-6), "at the origin"
+        assert len(boxes) == group.startswith("carry")
+        for _, (x, y, z, heading) in boxes:
+            assert abs(x) < 0.1 and 0.7 < y < 1.3 and 0.2 < z < 0.5 and abs(heading) < 0.2, "ahead, between the hands"
 
 
 def test_faults_are_red(samples: cq.PatchSet, trap: cq.PatchSet, tmp_path: Path) -> None:

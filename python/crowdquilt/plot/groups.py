@@ -71,9 +71,8 @@ def headline(page: Figure, found: Connectivity) -> None:
     style.heading(page, "Pose groups", f"This set is {state}", left)
     tall = page.get_figheight()
     right = 1 - left
-    for row, (text, colour) in enumerate(
-        [("kinds of one person, mirrored ones too", ALONE), ("+ roles among several people", TOGETHER)]
-    ):
+    lines = (("kinds of one person, mirrored ones too", ALONE), ("+ roles among several people", TOGETHER))
+    for row, (text, colour) in enumerate(lines):
         page.text(right, 1 - (0.44 + 0.22 * row) / tall, text, size=9.5, color=colour, ha="right", va="baseline")
 
 
@@ -121,8 +120,8 @@ def node(axes: Axes, patches: PatchSet, name: str, place: np.ndarray, fault: boo
 
 
 def typical(patches: PatchSet, group: str) -> Posed | None:
-    """The body of a group's most typical port and what it holds, standing at the origin and heading along z; where there
-    are kinds of one person, of one of them. O(ports x capsules)."""
+    """The body of a group's most typical port and what it holds, standing at the origin and heading along z; where
+    there are kinds of one person, of one of them. O(ports x capsules)."""
     ports = [
         (kind.people > 1, index, number, frame)
         for index, kind in enumerate(patches.kinds)
