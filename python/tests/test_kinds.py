@@ -19,7 +19,7 @@ from conftest import crowdquilt
 from crowdquilt import plot, server
 from crowdquilt.plot.cards import cards
 from crowdquilt.plot.figures import View, bodies_of, box_faces, extent, limbs
-from crowdquilt.plot.groups import typical
+from crowdquilt.plot.ports import typical
 
 HIPS, HEAD = 0, 13
 
