@@ -142,18 +142,9 @@ def patches(
     other, act together), and a few recurring poses at which patches begin and end. Files that end in .compose.toml
     compose patches by hand of clips of the takes.
     """
-    options: dict[str, Any] = {
-        "threshold": threshold,
-        "groups": groups,
-        "alone": alone,
-        "touch_gap": touch_gap,
-        "near": near,
-        "compose": compose,
-    }
     expect_picture(plot, sheet)
-    for folder in compose or []:
-        if folder.is_dir() and not any(folder.glob("*.compose.toml")):
-            raise CrowdquiltError(f"{folder}: expected files that end in .compose.toml, found none")
+    options: dict[str, Any] = {"threshold": threshold, "groups": groups, "alone": alone, "touch_gap": touch_gap,
+                               "near": near, "compose": expect_compose(compose)}  # fmt: skip
     try:
         made = make_set(source, captures, **{name: value for name, value in options.items() if value is not None})
     except ValueError as error:
@@ -173,10 +164,25 @@ def patches(
                 (part / name).write_text(text)
     if as_json:
         print(json.dumps(set_facts(made), indent=2))
-        return
+    else:
+        tell_made(made, out, quiet)
+
+
+def expect_compose(files: list[Path] | None) -> list[Path] | None:
+    """Refuse folders that hold no compose file."""
+    for folder in files or []:
+        if folder.is_dir() and not any(folder.glob("*.compose.toml")):
+            raise CrowdquiltError(f"{folder}: expected files that end in .compose.toml, found none")
+    return files
+
+
+def tell_made(made: patch.Made, out: Path, quiet: bool) -> None:
+    """Print what was made of which take, what there is to say of takes, and the sum."""
     if not quiet:
         console.print(take_table(made.takes))
+        console.print()
         console.print(kind_table(made.set, console.width))
+        console.print()
     for names, note in notes_of(made.takes):
         console.print(f"[yellow]{escape(names)}[/yellow]: {escape(note)}", soft_wrap=True)
     found = set_facts(made)
