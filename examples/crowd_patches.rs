@@ -1,0 +1,39 @@
+//! How long a crowd patch takes: `cargo run --release --example crowd_patches [patches per row]`.
+//!
+//! Squares of 8 m, period 10 s, n people in and n out, up to four objects and three standing people.
+
+use std::time::Instant;
+
+use crowdquilt::world::{FramePatch, Limits, Options, solve};
+
+fn main() {
+    let count: u64 = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(300);
+    println!("   n  patches   solved  median ms   p95 ms   max ms  restarts  solves");
+    for n in [4, 8, 16, 30] {
+        row(n, count);
+    }
+}
+
+fn row(n: usize, count: u64) {
+    let (mut millis, mut solved, mut restarts, mut solves) = (Vec::new(), 0, 0, 0);
+    for seed in 0..count {
+        let frame = FramePatch::sample(n, seed).expect("there is room");
+        let begin = Instant::now();
+        let solution = solve(&frame, &Limits::default(), &Options { seed, ..Options::default() }).expect("valid");
+        millis.push(begin.elapsed().as_secs_f64() * 1e3);
+        solved += u64::from(solution.ok());
+        restarts += u64::from(solution.restarts);
+        solves += solution.solves;
+    }
+    millis.sort_by(f64::total_cmp);
+    let at = |share: f64| millis[((millis.len() - 1) as f64 * share) as usize];
+    println!(
+        "{n:4}  {count:7}  {:6.1}%  {:9.3}  {:7.3}  {:7.3}  {:8.2}  {:6.0}",
+        100.0 * solved as f64 / count as f64,
+        at(0.5),
+        at(0.95),
+        at(1.0),
+        restarts as f64 / count as f64,
+        solves as f64 / count as f64,
+    );
+}

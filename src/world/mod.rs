@@ -1,0 +1,51 @@
+//! Crowd patches: endless populated worlds from pieces of periodic animation.
+//!
+//! A *crowd patch* is a convex polygon with a period. *Patterns* on its edges say where, when and how fast people
+//! cross: two patches whose patterns mirror each other join without a seam. Inside, walkers are led from the inputs to
+//! the outputs so that nobody ever touches anybody or anything.
+//!
+//! ```
+//! use crowdquilt::world::{FramePatch, Limits, Options, PatternType, solve};
+//!
+//! // Four people in and four out over each border of a square of 8 m, every 10 s.
+//! let types = [const { PatternType::mixed(4, 4) }; 4];
+//! let frame = FramePatch::random_square(8.0, 10.0, &types, 1)?;
+//! let solution = solve(&frame, &Limits::default(), &Options { seed: 1, ..Options::default() })?;
+//! assert!(solution.ok());
+//! let place = solution.patch.walkers[0].path.position(2.5);
+//! assert!(place.is_finite());
+//! # Ok::<(), crowdquilt::Error>(())
+//! ```
+//!
+//! | file | what |
+//! |---|---|
+//! | `pattern.rs`, `spacing.rs`, `kinds.rs` | crossings on a border, their mirror image, how far apart they stay, types and random patterns |
+//! | `shape.rs`, `frame.rs`, `path.rs`, `patch.rs` | objects, the unsolved patch, a walker's curve, the solved patch |
+//! | `assign.rs`, `pairing.rs`, `route.rs` | which input leads to which output and when, on which side of the objects |
+//! | `solve/` | curves without collisions, within the limits of walking |
+//! | `particles.rs` | the published particle method, to compare |
+//! | `identity.rs`, `lattice.rs` | who is who over all borders and periods, at any time; endless worlds |
+
+mod assign;
+mod band;
+mod frame;
+mod furnish;
+mod kinds;
+mod limits;
+mod pairing;
+mod patch;
+mod path;
+mod pattern;
+mod route;
+mod shape;
+mod solve;
+mod spacing;
+
+pub use frame::{Border, FramePatch, Standing, StaticObject};
+pub use kinds::{Flow, PatternType, balance};
+pub use limits::Limits;
+pub use patch::{CrowdPatch, Port, Walker};
+pub use path::Path;
+pub use pattern::{Crossing, Pattern, balanced};
+pub use shape::Shape;
+pub use solve::{Options, Solution, solve};

@@ -1,0 +1,100 @@
+//! What to do when improving the curves one by one gets stuck.
+
+use glam::DVec2;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use super::Options;
+use super::planner::Planner;
+
+/// Share of stuck walkers that swap outputs; the others are kicked aside.
+const SWAP: f64 = 0.35;
+/// How far walkers are kicked (standard deviation), metres.
+const KICK: f64 = 0.9;
+/// Half the length of a kick in knots.
+const REACH: f64 = 7.0;
+/// Noise of costs, growing with every restart.
+const NOISE: f64 = 1.0;
+
+impl Planner {
+    /// Searches until all walkers are free or the options are spent. Returns who is not, for the best attempt, and the
+    /// number of restarts.
+    pub fn run(&mut self, options: &Options, rng: &mut ChaCha8Rng) -> (Vec<usize>, u32) {
+        let mut best: Option<(Vec<usize>, Vec<usize>, Vec<super::track::Track>)> = None;
+        for restart in 0..=options.restarts {
+            self.connect(NOISE * f64::from(restart), rng);
+            let bad = self.mend(options, rng);
+            if bad.is_empty() {
+                return (bad, restart);
+            }
+            if best.as_ref().is_none_or(|(least, ..)| bad.len() < least.len()) {
+                best = Some((bad, self.outputs.clone(), self.tracks.clone()));
+            }
+        }
+        let (bad, outputs, tracks) = best.unwrap_or_default();
+        (self.outputs, self.tracks) = (outputs, tracks);
+        (bad, options.restarts)
+    }
+
+    fn connect(&mut self, noise: f64, rng: &mut ChaCha8Rng) {
+        let mut outputs = std::mem::take(&mut self.outputs);
+        self.pairing.assign(noise, rng, &mut outputs);
+        self.outputs = outputs;
+        (0..self.tracks.len()).for_each(|j| self.lay(j));
+    }
+
+    /// Relaxes and repairs by turns; returns who is left.
+    fn mend(&mut self, options: &Options, rng: &mut ChaCha8Rng) -> Vec<usize> {
+        for round in 0..=options.rounds {
+            if self.relax(options.sweeps) {
+                return Vec::new();
+            }
+            if round == options.rounds {
+                break;
+            }
+            for j in 0..self.tracks.len() {
+                if !self.is_free(j) {
+                    if rng.random::<f64>() < SWAP { self.swap(j, rng) } else { self.kick(j, rng) }
+                }
+            }
+        }
+        (0..self.tracks.len()).filter(|&j| !self.is_free(j)).collect()
+    }
+
+    /// Exchanges the output of walker `j` with that of the partner of least cost of a few.
+    fn swap(&mut self, j: usize, rng: &mut ChaCha8Rng) {
+        let n = self.tracks.len();
+        let cost = |i: usize| {
+            let (a, b) = (self.outputs[i], self.outputs[j]);
+            self.pairing.cost(i, b) + self.pairing.cost(j, a) - self.pairing.cost(i, a) - self.pairing.cost(j, b)
+        };
+        let partner = (0..4).map(|_| rng.random_range(0..n)).filter(|&i| i != j);
+        let Some(i) = partner.min_by(|&a, &b| cost(a).total_cmp(&cost(b))) else { return };
+        if cost(i) > 100.0 {
+            return self.kick(j, rng);
+        }
+        self.outputs.swap(i, j);
+        self.lay(i);
+        self.lay(j);
+    }
+
+    /// Bends the curve of walker `j` somewhere, to either side.
+    fn kick(&mut self, j: usize, rng: &mut ChaCha8Rng) {
+        let size = KICK * (0..4).map(|_| rng.random::<f64>() - 0.5).sum::<f64>() * 3.0_f64.sqrt();
+        let push = DVec2::from_angle(rng.random::<f64>() * std::f64::consts::TAU) * size;
+        let track = &mut self.tracks[j];
+        let free = track.free.clone();
+        if free.is_empty() {
+            return;
+        }
+        let middle = rng.random_range(free.clone()) as f64;
+        for k in free {
+            let far = (k as f64 - middle) / REACH;
+            if far.abs() < 1.0 {
+                track.points[k] += push * (1.0 - far * far).powi(2);
+            }
+        }
+        track.update_knots();
+        self.touch(j);
+    }
+}
