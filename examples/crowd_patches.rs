@@ -9,7 +9,8 @@ use crowdquilt::world::{FramePatch, Limits, Options, solve};
 fn main() {
     let count: u64 = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(300);
     println!("   n  patches   solved  median ms   p95 ms   max ms  restarts  solves");
-    for n in [4, 8, 16, 30] {
+    let only = std::env::args().nth(2).and_then(|n| n.parse().ok());
+    for n in [4, 8, 16, 30].into_iter().filter(|&n| only.is_none_or(|only: usize| only == n)) {
         row(n, count);
     }
 }

@@ -142,7 +142,8 @@ impl Flow {
         (0..400).find_map(|_| {
             let crossing = self.random((low, high), pattern.period, limits, rng);
             let free = spacing::directed(pattern)
-                .all(|other| spacing::distance((&crossing, inward), other, pattern.period) >= apart);
+                .all(|other| spacing::distance((&crossing, inward), other, pattern.period) >= apart
+                    && spacing::passable((&crossing, inward), other, pattern.period, apart));
             free.then_some(crossing)
         })
     }

@@ -37,6 +37,32 @@ fn distance_once((a, a_in): (&Crossing, bool), (b, b_in): (&Crossing, bool), tim
     (from + v * nearest.clamp(begin, end)).length()
 }
 
+/// Acceleration with which walkers are expected to step aside, m/s2: half of what they can.
+const ASIDE: f32 = 1.2;
+/// How far people look ahead when they step aside, seconds.
+const AHEAD_SECS: f32 = 2.4;
+
+/// Whether two walkers who go straight on beyond their straight parts could still step aside for each other: a pattern
+/// that lets people come in right in front of those who go out has no solution within the limits of acceleration.
+pub(super) fn passable(a: (&Crossing, bool), b: (&Crossing, bool), period: f32, apart: f32) -> bool {
+    let near = ((b.0.time - a.0.time) / period).round();
+    (-1..=1).all(|lap| passable_once(a, b, b.0.time - (near + lap as f32) * period - a.0.time, apart))
+}
+
+/// The same with `b` crossing `lag` seconds after `a`.
+fn passable_once((a, a_in): (&Crossing, bool), (b, b_in): (&Crossing, bool), lag: f32, apart: f32) -> bool {
+    const SAMPLES: i32 = 48;
+    let place = |c: &Crossing, inward: bool, s: f32| {
+        glam::Vec2::new(c.place + c.along * s, if inward { c.across * s } else { -c.across * s })
+    };
+    let dodge = |s: f32| 0.5 * ASIDE * (s.abs() - STRAIGHT_SECS).max(0.0).powi(2);
+    (0..=SAMPLES).map(|i| AHEAD_SECS * (2.0 * i as f32 / SAMPLES as f32 - 1.0)).all(|s| {
+        let other = s - lag;
+        let need = apart - dodge(s) - dodge(other);
+        need <= 0.0 || other.abs() > AHEAD_SECS || place(a, a_in, s).distance(place(b, b_in, other)) >= need
+    })
+}
+
 /// Crossings of a pattern with whether they lead in.
 pub(super) fn directed(pattern: &Pattern) -> impl Iterator<Item = (&Crossing, bool)> {
     pattern.inputs.iter().map(|c| (c, true)).chain(pattern.outputs.iter().map(|c| (c, false)))

@@ -14,7 +14,7 @@ const BORDER_ROOM: f64 = 0.05;
 /// What counts as free of objects and borders.
 const SLACK: f64 = 0.002;
 /// Share of the limits that is aimed at: the optimum gives way a little.
-const AIM: f64 = 0.85;
+
 /// Share of the limits that is accepted.
 const KEEP: f64 = 0.99;
 
@@ -115,11 +115,18 @@ impl Ground {
         }
     }
 
+    /// How much the step from point `k` to the next is over what is aimed at; `None` if it is not.
+    pub fn haste(&self, track: &Track, k: usize) -> Option<DVec2> {
+        let step = track.points[k + 1] - track.points[k];
+        let (length, most) = (step.length(), super::planner::TUNE.aim.max(0.95) * self.speed);
+        (length > most).then(|| step * (1.0 - most / length))
+    }
+
     /// How much the bend at knot `k` is over what is aimed at; `None` if it is not.
     pub fn excess(&self, track: &Track, k: usize) -> Option<DVec2> {
         let bend = track.bend(k);
-        let most = AIM * self.bend;
-        let slow = AIM * self.turning;
+        let most = super::planner::TUNE.aim * self.bend;
+        let slow = super::planner::TUNE.aim * self.turning;
         let velocity = velocity(track, k);
         let speed = velocity.length();
         // Where `slow * speed` is more than `most`, turning is no matter.
@@ -146,3 +153,12 @@ fn least_length(a: DVec2, b: DVec2) -> f64 {
     let t = (-a.dot(ab) / ab.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
     (a + ab * t).length()
 }
+
+impl Ground { pub fn explain(&self, t:&Track)->String {
+ let kn=t.moving_knots();
+ let a=kn.clone().map(|k| t.bend(k).length()).fold(0.0,f64::max)/self.step/self.step;
+ let v=kn.clone().all(|k| self.slow_enough(t,k));
+ let turn: Vec<usize>=kn.clone().filter(|&k| !self.turns_slowly(t,k)).collect();
+ let ins: Vec<usize>=(kn.start-1..kn.end+1).filter(|&k| !self.inside(t,k)).collect();
+ let ob: Vec<usize>=(kn.start-1..kn.end+1).filter(|&k| !self.off_objects(t,k)).collect();
+ format!("acc {a:.2} speed {v} turn {turn:?} border {ins:?} obj {ob:?}") } }

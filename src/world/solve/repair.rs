@@ -8,9 +8,9 @@ use super::Options;
 use super::planner::Planner;
 
 /// Share of stuck walkers that swap outputs; the others are kicked aside.
-const SWAP: f64 = 0.35;
+
 /// How far walkers are kicked (standard deviation), metres.
-const KICK: f64 = 0.9;
+
 /// Half the length of a kick in knots.
 const REACH: f64 = 7.0;
 /// Noise of costs, growing with every restart.
@@ -22,7 +22,7 @@ impl Planner {
     pub fn run(&mut self, options: &Options, rng: &mut ChaCha8Rng) -> (Vec<usize>, u32) {
         let mut best: Option<(Vec<usize>, Vec<usize>, Vec<super::track::Track>)> = None;
         for restart in 0..=options.restarts {
-            self.connect(NOISE * f64::from(restart), rng);
+            self.connect(NOISE * f64::from(restart.min(3)), rng);
             let bad = self.mend(options, rng);
             if bad.is_empty() {
                 return (bad, restart);
@@ -33,6 +33,8 @@ impl Planner {
         }
         let (bad, outputs, tracks) = best.unwrap_or_default();
         (self.outputs, self.tracks) = (outputs, tracks);
+        for j in 0..self.tracks.len() { self.touch(j); }
+        if std::env::var("EXPLAIN").is_ok() { for &j in &bad { self.explain(j); } }
         (bad, options.restarts)
     }
 
@@ -43,21 +45,34 @@ impl Planner {
         (0..self.tracks.len()).for_each(|j| self.lay(j));
     }
 
-    /// Relaxes and repairs by turns; returns who is left.
+    /// Relaxes and repairs by turns, going back where that made it worse; returns who is left.
     fn mend(&mut self, options: &Options, rng: &mut ChaCha8Rng) -> Vec<usize> {
-        for round in 0..=options.rounds {
-            if self.relax(options.sweeps) {
-                return Vec::new();
-            }
-            if round == options.rounds {
+        self.relax(options.sweeps);
+        let mut bad = self.bad();
+        for _ in 0..options.rounds {
+            if bad.is_empty() {
                 break;
             }
-            for j in 0..self.tracks.len() {
-                if !self.is_free(j) {
-                    if rng.random::<f64>() < SWAP { self.swap(j, rng) } else { self.kick(j, rng) }
-                }
+            if std::env::var("TRACE").is_ok() { eprint!("{} ",bad.len()); }
+            let before = (self.outputs.clone(), self.tracks.clone());
+            for &j in &bad {
+                if rng.random::<f64>() < super::planner::TUNE.swap { self.swap(j, rng) } else { self.kick(j, rng) }
+            }
+            self.relax(options.sweeps);
+            let now = self.bad();
+            if now.len() <= bad.len() {
+                bad = now;
+            } else {
+                (self.outputs, self.tracks) = before;
+                (0..self.tracks.len()).for_each(|j| self.touch(j));
             }
         }
+            if std::env::var("TRACE").is_ok() { eprintln!("{} ",bad.len()); }
+        bad
+    }
+
+    /// Walkers that do not keep all limits.
+    fn bad(&mut self) -> Vec<usize> {
         (0..self.tracks.len()).filter(|&j| !self.is_free(j)).collect()
     }
 
@@ -80,7 +95,7 @@ impl Planner {
 
     /// Bends the curve of walker `j` somewhere, to either side.
     fn kick(&mut self, j: usize, rng: &mut ChaCha8Rng) {
-        let size = KICK * (0..4).map(|_| rng.random::<f64>() - 0.5).sum::<f64>() * 3.0_f64.sqrt();
+        let size = super::planner::TUNE.kick * (0..4).map(|_| rng.random::<f64>() - 0.5).sum::<f64>() * 3.0_f64.sqrt();
         let push = DVec2::from_angle(rng.random::<f64>() * std::f64::consts::TAU) * size;
         let track = &mut self.tracks[j];
         let free = track.free.clone();
@@ -96,5 +111,15 @@ impl Planner {
         }
         track.update_knots();
         self.touch(j);
+    }
+}
+
+impl Planner {
+    fn explain(&mut self, j: usize) {
+        let t = &self.tracks[j];
+        let g = &self.ground;
+        eprintln!("bad {j} edges {}->{} secs {:.1} dist {:.1} free {:?} {}", t.entry.edge, t.exit.edge, t.exit.time-t.entry.time, t.entry.place.distance(t.exit.place), t.free, g.explain(t));
+        for (i,b) in self.tracks.iter().enumerate() { for s in super::contact::shifts(t,b,50) { if (i!=j||s!=0) && !super::contact::free(t,b,s,0.5) {
+           eprintln!("   touches {i} shift {s} min {}", super::contact::least(t,b,s)); } } }
     }
 }

@@ -52,6 +52,21 @@ impl System {
         }
     }
 
+    /// Adds weight x |step from k to k + 1 - wanted|^2, given `excess` = step now - wanted.
+    pub fn slow(&mut self, k: usize, weight: f64, excess: DVec2) {
+        let [from, to] = [self.row(k + 1), self.row(k + 2)];
+        for (row, sign) in [(from, -1.0), (to, 1.0)] {
+            let Some(row) = row else { continue };
+            for (axis, value) in [excess.x, excess.y].into_iter().enumerate() {
+                self.right[row + axis] -= weight * sign * value;
+                self.rows[row + axis][0] += weight;
+                if sign > 0.0 && from.is_some() {
+                    self.rows[row + axis][2] -= weight;
+                }
+            }
+        }
+    }
+
     /// Adds weight x (gap - normal . move of knot k)^2.
     pub fn push(&mut self, k: usize, weight: f64, normal: DVec2, gap: f64) {
         let n = [normal.x, normal.y];
