@@ -10,6 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::assign::Assignment;
 use super::frame::Line;
+use super::route::route;
 use super::shape::Obstacle;
 use super::{FramePatch, Limits};
 
@@ -46,7 +47,8 @@ impl Pairing {
         let outputs: Vec<Line> = frame.outputs().map(|p| frame.line(p, false, limits)).collect();
         let period = f64::from(frame.period());
         let pairs = inputs.iter().flat_map(|a| outputs.iter().map(move |b| (a, b)));
-        let (cost, laps) = pairs.map(|(a, b)| connect(a, b, period, obstacles)).unzip();
+        let mut via = Vec::new();
+        let (cost, laps) = pairs.map(|(a, b)| connect(a, b, period, obstacles, &mut via)).unzip();
         Self { inputs, outputs, cost, laps, ..Self::default() }
     }
 
@@ -58,6 +60,12 @@ impl Pairing {
     /// Cost of leading `input` to `output`.
     pub fn cost(&self, input: usize, output: usize) -> f64 {
         self.cost[input * self.len() + output]
+    }
+
+    /// Makes it unlikely that `input` is led to `output` again.
+    pub fn avoid(&mut self, input: usize, output: usize, cost: f64) {
+        let n = self.len();
+        self.cost[input * n + output] += cost;
     }
 
     /// Periods between them.
@@ -75,26 +83,32 @@ impl Pairing {
 }
 
 /// Cost of a connection and the periods it takes.
-fn connect(a: &Line, b: &Line, period: f64, obstacles: &[Obstacle]) -> (f64, u32) {
+fn connect(a: &Line, b: &Line, period: f64, obstacles: &[Obstacle], via: &mut Vec<DVec2>) -> (f64, u32) {
     let (from, to) = (a.at(a.time + a.reach), b.at(b.time - b.reach));
-    let blocked = obstacles.iter().any(|o| o.segment_distance(from, to) < 0.0);
-    let detour = if blocked { 1.1 } else { 1.0 };
-    let at_least = (from.distance(to) * detour / FASTEST).max(SHORTEST) + a.reach + b.reach;
+    let way = length(from, to, obstacles, via);
+    let blocked = !via.is_empty();
+    let at_least = (way / FASTEST).max(SHORTEST) + a.reach + b.reach;
     let first = ((a.time + at_least - b.time) / period).ceil().max(0.0) as u32;
-    let cost = |laps: u32| plain_cost(a, b, b.time + f64::from(laps) * period - a.time, from, to);
+    let cost = |laps: u32| plain_cost(a, b, b.time + f64::from(laps) * period - a.time, way, to - from);
     // A longer stay bends less; two more periods are enough for any pair.
     let laps = (first..first + 2).find(|&k| cost(k).1 <= HARDEST).unwrap_or(first + 2);
     let odd = if a.edge == b.edge { SAME_EDGE } else { 0.0 } + if blocked { BLOCKED } else { 0.0 };
     (cost(laps).0 + odd, laps)
 }
 
+/// Length of the way past the objects.
+fn length(from: DVec2, to: DVec2, obstacles: &[Obstacle], via: &mut Vec<DVec2>) -> f64 {
+    route(from, to, obstacles, &|_| true, via);
+    let corners = || std::iter::once(from).chain(via.iter().copied()).chain(std::iter::once(to));
+    corners().zip(corners().skip(1)).map(|(p, q)| p.distance(q)).sum()
+}
+
 /// Cost and greatest acceleration of the cubic from one straight part to the other.
-fn plain_cost(a: &Line, b: &Line, secs: f64, from: DVec2, to: DVec2) -> (f64, f64) {
+fn plain_cost(a: &Line, b: &Line, secs: f64, length: f64, way: DVec2) -> (f64, f64) {
     let secs = secs - a.reach - b.reach;
-    let way = to - from;
     let begin = 6.0 * way / (secs * secs) - (4.0 * a.velocity + 2.0 * b.velocity) / secs;
     let end = -6.0 * way / (secs * secs) + (2.0 * a.velocity + 4.0 * b.velocity) / secs;
     let acceleration = begin.length().max(end.length());
-    let speed = way.length() / secs;
+    let speed = length / secs;
     (6.0 * (speed - COMFORT).powi(2) + 0.5 * acceleration * acceleration, acceleration)
 }

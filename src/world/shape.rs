@@ -146,6 +146,21 @@ impl Obstacle {
         self.centre
     }
 
+    /// How far `p` must go in direction `n` until it has left the obstacle grown by `margin`; none if it is not in the way.
+    pub fn way_out(&self, p: DVec2, n: DVec2, margin: f64) -> Option<f64> {
+        let radius = self.radius + margin;
+        let discs = self.corners.iter().filter_map(|&corner| {
+            let aside = (corner - p).perp_dot(n);
+            (aside.abs() < radius).then(|| (corner - p).dot(n) + (radius * radius - aside * aside).sqrt())
+        });
+        let sides = self.edges().filter_map(|(a, b)| {
+            let out = -(b - a).try_normalize()?.perp() * radius;
+            let (sa, sb) = ((a + out - p).perp_dot(n), (b + out - p).perp_dot(n));
+            (sa * sb < 0.0).then(|| (a + out - p).lerp(b + out - p, sa / (sa - sb)).dot(n))
+        });
+        discs.chain(sides).max_by(f64::total_cmp).filter(|&way| way > 0.0)
+    }
+
     /// Distance between this and another obstacle; negative or zero if they touch.
     pub fn gap(&self, other: &Self) -> f64 {
         let sides = self.edges().map(|(a, b)| other.segment_distance(a, b));
@@ -188,6 +203,21 @@ mod tests {
         assert!((bench().segment_distance(DVec2::new(-2.0, 3.0), DVec2::new(5.0, 3.0)) - 0.5).abs() < 1e-6);
         assert!(bench().segment_distance(DVec2::new(1.0, 0.0), DVec2::new(1.0, 4.0)) < 0.0);
         assert!(bench().support(DVec2::X).abs_diff_eq(DVec2::new(2.25, 1.75), 1e-6) || bench().support(DVec2::X).x > 2.2);
+    }
+
+    #[test]
+    fn the_way_out_ends_on_the_grown_outline() {
+        for shape in [Shape::disc(Vec2::new(1.0, 2.0), 0.4), Shape::oblong(Vec2::new(1.0, 2.0), Vec2::new(2.0, 0.5), 0.4)] {
+            let obstacle = Obstacle::new(&shape, 0.25);
+            for i in 0..40 {
+                let p = DVec2::new(1.0, 2.0) + DVec2::from_angle(f64::from(i)) * 0.02 * f64::from(i);
+                let n = DVec2::from_angle(1.7 * f64::from(i));
+                match obstacle.way_out(p, n, 0.06) {
+                    Some(way) => assert!((obstacle.distance(p + n * way).0 - 0.06).abs() < 1e-6, "{i}"),
+                    None => assert!(obstacle.distance(p).0 >= 0.06, "{i}"),
+                }
+            }
+        }
     }
 
     #[test]

@@ -106,12 +106,29 @@ impl Ground {
                     found.push(Push { knot, normal: border.inward, gap });
                 }
             }
-            for obstacle in self.obstacles.iter().filter(|o| o.near(p, OBJECT_ROOM)) {
-                let (distance, normal) = obstacle.distance(p);
-                if distance < OBJECT_ROOM {
-                    found.push(Push { knot, normal, gap: OBJECT_ROOM - distance });
-                }
+        }
+        for obstacle in &self.obstacles {
+            self.pass(track, obstacle, found);
+        }
+    }
+
+    /// What keeps `track` off `obstacle`: every time it comes near, it passes on one side.
+    fn pass(&self, track: &Track, obstacle: &Obstacle, found: &mut Vec<Push>) {
+        let knots = track.moving_knots();
+        let hit = |k: usize| {
+            let (p, q) = (track.knots[k], track.knots[k + 1]);
+            obstacle.near(p, 0.5) && obstacle.segment_distance(p, q) < OBJECT_ROOM
+        };
+        let mut k = knots.start - 1;
+        while k < knots.end {
+            let begin = k;
+            while k < knots.end && hit(k) {
+                k += 1;
             }
+            if k > begin {
+                pass_once(track, begin..k + 1, obstacle, found);
+            }
+            k += 1;
         }
     }
 
@@ -140,6 +157,16 @@ impl Ground {
         let (ahead, aside) = (over(ahead, most), over(aside, slow * speed));
         (ahead != 0.0 || aside != 0.0).then(|| along * ahead - along.perp() * aside)
     }
+}
+
+/// Pushes `knots` of `track` off `obstacle`, to the side that is nearer as a whole.
+fn pass_once(track: &Track, knots: std::ops::Range<usize>, obstacle: &Obstacle, found: &mut Vec<Push>) {
+    let along = (track.knots[knots.end - 1] - track.knots[knots.start]).normalize_or(DVec2::X);
+    let way = |knot: usize, normal: DVec2| obstacle.way_out(track.knots[knot], normal, OBJECT_ROOM).unwrap_or(0.0);
+    let furthest = |normal: DVec2| knots.clone().map(|k| way(k, normal)).fold(0.0, f64::max);
+    let (left, right) = (along.perp(), -along.perp());
+    let normal = if furthest(left) <= furthest(right) { left } else { right };
+    found.extend(knots.map(|knot| Push { knot, normal, gap: way(knot, normal) }).filter(|push| push.gap > 0.0));
 }
 
 /// Velocity at knot `k`, metres per step.

@@ -121,6 +121,18 @@ impl Planner {
         self.touch(j);
     }
 
+    /// Improves walker `j` as if alone; returns whether it keeps its own limits then.
+    pub fn settle(&mut self, j: usize) -> bool {
+        for _ in 0..8 {
+            if self.ground.keeps(&self.tracks[j]) {
+                return true;
+            }
+            self.pushes.clear();
+            self.yield_to_pushes(j);
+        }
+        self.ground.keeps(&self.tracks[j])
+    }
+
     /// Notes that track `j` moved.
     pub fn touch(&mut self, j: usize) {
         self.clock += 1;
@@ -176,7 +188,12 @@ impl Planner {
             }
         }
         self.pushes.iter_mut().for_each(|p| p.gap *= TUNE.share);
-        self.ground.pushes(track, &mut self.pushes);
+        self.yield_to_pushes(j);
+    }
+
+    /// Moves walker `j` as the pushes of others and its own limits want it.
+    fn yield_to_pushes(&mut self, j: usize) {
+        self.ground.pushes(&self.tracks[j], &mut self.pushes);
         let track = &mut self.tracks[j];
         let pressure = self.pressure[j];
         self.pressure[j] = (pressure * TUNE.grow).min(TUNE.cap);

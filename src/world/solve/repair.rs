@@ -13,6 +13,8 @@ use super::planner::Planner;
 
 /// Half the length of a kick in knots.
 const REACH: f64 = 7.0;
+/// Cost of a connection that breaks the limits even without other walkers.
+const UNWALKABLE: f64 = 30.0;
 /// Noise of costs, growing with every restart.
 const NOISE: f64 = 1.0;
 
@@ -38,11 +40,28 @@ impl Planner {
         (bad, options.restarts)
     }
 
+    /// Connects all inputs to outputs, avoiding connections that cannot be walked even alone.
     fn connect(&mut self, noise: f64, rng: &mut ChaCha8Rng) {
-        let mut outputs = std::mem::take(&mut self.outputs);
-        self.pairing.assign(noise, rng, &mut outputs);
-        self.outputs = outputs;
-        (0..self.tracks.len()).for_each(|j| self.lay(j));
+        let mut outputs = Vec::new();
+        self.outputs.clear();
+        self.outputs.resize(self.tracks.len(), usize::MAX);
+        for _ in 0..4 {
+            self.pairing.assign(noise, rng, &mut outputs);
+            let mut again = false;
+            for (j, &output) in outputs.iter().enumerate() {
+                if self.outputs[j] != output {
+                    self.outputs[j] = output;
+                    self.lay(j);
+                    if !self.settle(j) {
+                        self.pairing.avoid(j, output, UNWALKABLE);
+                        again = true;
+                    }
+                }
+            }
+            if !again {
+                break;
+            }
+        }
     }
 
     /// Relaxes and repairs by turns, going back where that made it worse; returns who is left.
@@ -53,7 +72,7 @@ impl Planner {
             if bad.is_empty() {
                 break;
             }
-            if std::env::var("TRACE").is_ok() { eprint!("{} ",bad.len()); }
+            if std::env::var("TRACE").is_ok() { eprintln!("-- {} ",bad.len()); for &j in &bad {self.explain(j);} }
             let before = (self.outputs.clone(), self.tracks.clone());
             for &j in &bad {
                 if rng.random::<f64>() < super::planner::TUNE.swap { self.swap(j, rng) } else { self.kick(j, rng) }
