@@ -19,9 +19,17 @@ fn row(n: usize, count: u64) {
     let (mut millis, mut solved, mut restarts, mut solves) = (Vec::new(), 0, 0, 0);
     for seed in 0..count {
         let frame = FramePatch::sample(n, seed).expect("there is room");
-        let begin = Instant::now();
-        let solution = solve(&frame, &Limits::default(), &Options { seed, ..Options::default() }).expect("valid");
-        millis.push(begin.elapsed().as_secs_f64() * 1e3);
+        let options = Options { seed, ..Options::default() };
+        let mut least = f64::INFINITY;
+        // The fastest of three: other processes take the core for some milliseconds now and then.
+        let mut solution = None;
+        for _ in 0..3 {
+            let begin = Instant::now();
+            solution = Some(solve(&frame, &Limits::default(), &options).expect("valid"));
+            least = least.min(begin.elapsed().as_secs_f64() * 1e3);
+        }
+        millis.push(least);
+        let solution = solution.expect("solved thrice");
         solved += u64::from(solution.ok());
         restarts += u64::from(solution.restarts);
         solves += solution.solves;

@@ -71,10 +71,15 @@ pub(super) fn convex_problem(points: &[Vec2]) -> Option<String> {
     (!round || area < 1e-6).then(|| "expected a polygon that goes round once and has an area".to_string())
 }
 
+/// Distances beyond this many metres need not be exact.
+const FAR: f64 = 0.3;
+
 /// A convex polygon grown by a radius: what a body's centre stays out of when the radius includes the body's.
 #[derive(Clone, Debug)]
 pub(super) struct Obstacle {
     corners: Vec<DVec2>,
+    /// Outward unit normals of the edges; empty for a disc.
+    outward: Vec<DVec2>,
     radius: f64,
     centre: DVec2,
     /// Radius of the disc about `centre` that holds it all.
@@ -89,8 +94,11 @@ impl Obstacle {
             Shape::Convex(polygon) => (polygon.points.iter().map(|p| p.as_dvec2()).collect(), 0.0),
         };
         let centre = corners.iter().sum::<DVec2>() / corners.len() as f64;
+        let n = corners.len();
+        let normal = |i: usize| -(corners[(i + 1) % n] - corners[i]).perp().normalize();
+        let outward = if n > 1 { (0..n).map(normal).collect() } else { Vec::new() };
         let far = corners.iter().map(|c| c.distance(centre)).fold(0.0, f64::max);
-        Self { corners, radius: own + radius, centre, reach: far + own + radius }
+        Self { corners, outward, radius: own + radius, centre, reach: far + own + radius }
     }
 
     /// Whether `p` is within `margin` of the disc that holds it.
@@ -110,29 +118,37 @@ impl Obstacle {
             let away = p - centre;
             return (away.length(), away.try_normalize().unwrap_or(DVec2::X));
         }
-        let mut inside = (f64::NEG_INFINITY, DVec2::X);
+        let mut inside = (f64::NEG_INFINITY, 0);
+        for (i, (corner, normal)) in self.corners.iter().zip(&self.outward).enumerate() {
+            let depth = (p - *corner).dot(*normal);
+            if depth > inside.0 {
+                inside = (depth, i);
+            }
+        }
+        if inside.0 <= 0.0 {
+            return (inside.0, self.outward[inside.1]);
+        }
         let mut outside = (f64::INFINITY, DVec2::X);
         for (a, b) in self.edges() {
-            let outward = -(b - a).perp().normalize();
-            let depth = (p - a).dot(outward);
-            if depth > inside.0 {
-                inside = (depth, outward);
-            }
             let away = p - nearest(p, a, b);
             if away.length_squared() < outside.0 {
                 outside = (away.length_squared(), away);
             }
         }
-        if inside.0 <= 0.0 { inside } else { (outside.0.sqrt(), outside.1.normalize()) }
+        (outside.0.sqrt(), outside.1.normalize_or(DVec2::X))
     }
 
     fn edges(&self) -> impl Iterator<Item = (DVec2, DVec2)> {
         let n = self.corners.len();
-        (0..n).map(move |i| (self.corners[i], self.corners[(i + 1) % n]))
+        (0..n).map(move |i| (self.corners[i], self.corners[if i + 1 < n { i + 1 } else { 0 }]))
     }
 
-    /// Distance of the segment from `a` to `b`; negative or zero if it touches.
+    /// Distance of the segment from `a` to `b`, negative or zero if it touches; a lower bound if it is `FAR` away.
     pub fn segment_distance(&self, a: DVec2, b: DVec2) -> f64 {
+        let far = self.centre.distance(nearest(self.centre, a, b)) - self.reach;
+        if far > FAR || self.outward.is_empty() {
+            return far;
+        }
         let ends = self.core(a).0.min(self.core(b).0);
         let corners = self.corners.iter().map(|&c| c.distance(nearest(c, a, b))).fold(ends, f64::min);
         if ends > 0.0 && self.edges().any(|(c, d)| crosses(a, b, c, d)) {
@@ -153,8 +169,8 @@ impl Obstacle {
             let aside = (corner - p).perp_dot(n);
             (aside.abs() < radius).then(|| (corner - p).dot(n) + (radius * radius - aside * aside).sqrt())
         });
-        let sides = self.edges().filter_map(|(a, b)| {
-            let out = -(b - a).try_normalize()?.perp() * radius;
+        let sides = self.edges().enumerate().filter_map(|(i, (a, b))| {
+            let out = self.outward.get(i)? * radius;
             let (sa, sb) = ((a + out - p).perp_dot(n), (b + out - p).perp_dot(n));
             (sa * sb < 0.0).then(|| (a + out - p).lerp(b + out - p, sa / (sa - sb)).dot(n))
         });

@@ -63,8 +63,8 @@ impl Ground {
         if chord > 0.0 && chord * chord >= safe {
             return true;
         }
-        (0..=8).all(|i| {
-            let u = f64::from(i) / 8.0;
+        (0..=32).all(|i| {
+            let u = f64::from(i) / 32.0;
             let a = a0.lerp(a1, u);
             let v = v0 + (a0 + 0.5 * u * (a1 - a0)) * u;
             let square = v.length_squared();
@@ -93,7 +93,7 @@ impl Ground {
         let (p, q) = (track.knots[k], track.knots[k + 1]);
         self.obstacles
             .iter()
-            .all(|o| !o.near(p, 0.5) || o.segment_distance(p, q) >= SLACK + track.sag(k))
+            .all(|o| o.segment_distance(p, q) >= SLACK + track.sag(k))
     }
 
     /// What keeps `track` inside and off objects.
@@ -116,8 +116,7 @@ impl Ground {
     fn pass(&self, track: &Track, obstacle: &Obstacle, found: &mut Vec<Push>) {
         let knots = track.moving_knots();
         let hit = |k: usize| {
-            let (p, q) = (track.knots[k], track.knots[k + 1]);
-            obstacle.near(p, 0.5) && obstacle.segment_distance(p, q) < OBJECT_ROOM
+            obstacle.segment_distance(track.knots[k], track.knots[k + 1]) < OBJECT_ROOM
         };
         let mut k = knots.start - 1;
         while k < knots.end {

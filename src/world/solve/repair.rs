@@ -16,7 +16,7 @@ const REACH: f64 = 7.0;
 /// Cost of a connection that breaks the limits even without other walkers.
 const UNWALKABLE: f64 = 30.0;
 /// Noise of costs, growing with every restart.
-const NOISE: f64 = 1.0;
+const NOISE: f64 = 0.6;
 
 impl Planner {
     /// Searches until all walkers are free or the options are spent. Returns who is not, for the best attempt, and the
@@ -24,7 +24,7 @@ impl Planner {
     pub fn run(&mut self, options: &Options, rng: &mut ChaCha8Rng) -> (Vec<usize>, u32) {
         let mut best: Option<(Vec<usize>, Vec<usize>, Vec<super::track::Track>)> = None;
         for restart in 0..=options.restarts {
-            self.connect(NOISE * f64::from(restart.min(3)), rng);
+            self.connect(NOISE * f64::from(restart.min(3) + 1), rng);
             let bad = self.mend(options, rng);
             if bad.is_empty() {
                 return (bad, restart);
