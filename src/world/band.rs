@@ -75,9 +75,8 @@ mod tests {
             b.swap(c, pivot);
             for r in c + 1..n {
                 let f = a[r][c] / a[c][c];
-                for k in c..n {
-                    a[r][k] -= f * a[c][k];
-                }
+                let pivot_row = a[c].clone();
+                a[r].iter_mut().zip(&pivot_row).skip(c).for_each(|(x, p)| *x -= f * p);
                 b[r] -= f * b[c];
             }
         }

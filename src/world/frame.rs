@@ -103,13 +103,7 @@ impl FramePatch {
     ///
     /// # Errors
     /// If the outline is not convex, a pattern cannot be made, or the patch is not balanced.
-    pub fn random(
-        outline: Vec<Vec2>,
-        period: f32,
-        types: &[PatternType],
-        limits: &Limits,
-        seed: u64,
-    ) -> Result<Self> {
+    pub fn random(outline: Vec<Vec2>, period: f32, types: &[PatternType], limits: &Limits, seed: u64) -> Result<Self> {
         check_outline(&outline, types.len())?;
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let n = outline.len();
@@ -138,7 +132,10 @@ impl FramePatch {
 
     /// All inputs, edge by edge.
     pub fn inputs(&self) -> impl Iterator<Item = Port> {
-        self.patterns.iter().enumerate().flat_map(|(edge, p)| (0..p.inputs.len()).map(move |index| Port { edge, index }))
+        self.patterns
+            .iter()
+            .enumerate()
+            .flat_map(|(edge, p)| (0..p.inputs.len()).map(move |index| Port { edge, index }))
     }
 
     /// All outputs, edge by edge.
@@ -185,6 +182,29 @@ impl FramePatch {
         found.extend(super::pattern::balanced(&self.patterns).err().map(|e| e.to_string()));
         if found.is_empty() {
             found.extend(self.object_problems(limits));
+            found.extend(self.corner_problems(limits));
+        }
+        found
+    }
+
+    /// Walkers who meet near a corner before either can step aside, or whose bodies reach over the next edge.
+    fn corner_problems(&self, limits: &Limits) -> Vec<String> {
+        let ports = self.inputs().map(|p| (p, true)).chain(self.outputs().map(|p| (p, false)));
+        let lines: Vec<Line> = ports.map(|(port, inward)| self.line(port, inward, limits)).collect();
+        let borders: Vec<Border> = (0..self.outline.len()).map(|edge| self.border(edge)).collect();
+        let mut found = Vec::new();
+        for (i, a) in lines.iter().enumerate() {
+            let others = borders.iter().enumerate().filter(|&(edge, _)| edge != a.edge);
+            let cut = others.filter(|(_, b)| {
+                let depth = |s: f64| (a.at(a.time + s) - b.begin).dot(b.inward);
+                depth(-a.reach).min(depth(a.reach)) < f64::from(spacing::least_depth(limits))
+            });
+            found.extend(cut.map(|(edge, _)| format!("a crossing of edge {} is too near to edge {edge}", a.edge)));
+            for b in lines[i + 1..].iter().filter(|b| b.edge != a.edge && b.place.distance_squared(a.place) < 16.0) {
+                if straight_distance(a, b, f64::from(self.period())) < 2.0 * f64::from(limits.radius) {
+                    found.push(format!("two crossings of edges {} and {} collide at their corner", a.edge, b.edge));
+                }
+            }
         }
         found
     }
@@ -237,9 +257,23 @@ impl FramePatch {
     }
 }
 
+/// Least distance of two walkers while both are on the straight parts of different edges.
+fn straight_distance(a: &Line, b: &Line, period: f64) -> f64 {
+    let lag = (b.time - a.time) - ((b.time - a.time) / period).round() * period;
+    let (begin, end) = ((-a.reach).max(lag - b.reach), a.reach.min(lag + b.reach));
+    if begin > end {
+        return f64::INFINITY;
+    }
+    let apart = |s: f64| a.at(a.time + s) - b.at(b.time + s - lag);
+    let (from, v) = (apart(begin), a.velocity - b.velocity);
+    let nearest = (-from.dot(v) / v.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, end - begin);
+    (from + v * nearest).length()
+}
+
 fn check_outline(outline: &[Vec2], patterns: usize) -> Result<()> {
     let problem = convex_problem(outline).or_else(|| {
-        (outline.len() != patterns).then(|| format!("expected a pattern for each of {} edges, found {patterns}", outline.len()))
+        (outline.len() != patterns)
+            .then(|| format!("expected a pattern for each of {} edges, found {patterns}", outline.len()))
     });
     problem.map_or(Ok(()), |problem| Err(Error::invalid("patch", "outline", problem)))
 }

@@ -47,16 +47,18 @@ impl FramePatch {
         (0..TRIES).find_map(|_| {
             let at = least + (most - least) * Vec2::new(rng.random(), rng.random());
             let shape = make(at, rng.random::<f32>() * std::f32::consts::TAU);
-            (self.room_at_borders(&shape) && self.misplaced(&shape, limits).is_none() && passable(&shape, &others, limits))
-                .then_some(shape)
+            (self.room_at_borders(&shape)
+                && self.misplaced(&shape, limits).is_none()
+                && passable(&shape, &others, limits))
+            .then_some(shape)
         })
     }
 
     fn room_at_borders(&self, shape: &Shape) -> bool {
         let own = Obstacle::new(shape, 0.0);
-        (0..self.outline.len()).map(|edge| self.border(edge)).all(|border| {
-            (own.support(-border.inward) - border.begin).dot(border.inward) >= f64::from(FROM_BORDER)
-        })
+        (0..self.outline.len())
+            .map(|edge| self.border(edge))
+            .all(|border| (own.support(-border.inward) - border.begin).dot(border.inward) >= f64::from(FROM_BORDER))
     }
 
     /// A test patch: a square of 8 m with a period of 10 s and `n` people in and out, split evenly over its borders,

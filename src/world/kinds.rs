@@ -77,10 +77,7 @@ impl PatternType {
     /// Limited in space: people keep to the right, those who come in on the first half of the edge as it runs
     /// counter-clockwise about the patch, those who go out on the second.
     pub const fn lanes(inputs: usize, outputs: usize) -> Self {
-        Self {
-            inputs: Flow::anywhere(inputs).through(0.5, 1.0),
-            outputs: Flow::anywhere(outputs).through(0.0, 0.5),
-        }
+        Self { inputs: Flow::anywhere(inputs).through(0.5, 1.0), outputs: Flow::anywhere(outputs).through(0.0, 0.5) }
     }
 
     /// Limited in time: a light that is green between two fractions of the period.
@@ -114,7 +111,13 @@ impl PatternType {
         Err(Error::invalid("pattern", format!("edge of {length} m, period {period} s"), problem))
     }
 
-    fn try_generate(&self, length: f32, period: f32, limits: &Limits, rng: &mut ChaCha8Rng) -> std::result::Result<Pattern, String> {
+    fn try_generate(
+        &self,
+        length: f32,
+        period: f32,
+        limits: &Limits,
+        rng: &mut ChaCha8Rng,
+    ) -> std::result::Result<Pattern, String> {
         let mut pattern = Pattern::empty(length, period);
         let total = self.inputs.count + self.outputs.count;
         // In turn, so that neither direction takes all the room.
@@ -141,9 +144,10 @@ impl Flow {
         let apart = 2.0 * limits.radius + spacing::GAP;
         (0..400).find_map(|_| {
             let crossing = self.random((low, high), pattern.period, limits, rng);
-            let free = spacing::directed(pattern)
-                .all(|other| spacing::distance((&crossing, inward), other, pattern.period) >= apart
-                    && spacing::passable((&crossing, inward), other, pattern.period, apart));
+            let free = spacing::directed(pattern).all(|other| {
+                spacing::distance((&crossing, inward), other, pattern.period) >= apart
+                    && spacing::passable((&crossing, inward), other, pattern.period, apart)
+            });
             free.then_some(crossing)
         })
     }
@@ -162,12 +166,15 @@ impl Flow {
         let time = ((begin + (end - begin) * rng.random::<f32>()) * period).rem_euclid(period);
         // People walk at 1.3 m/s, give or take, and hardly ever askew over a border.
         let across = (1.3 + 0.14 * bell(rng)).clamp(1.0, 1.6).min(0.85 * limits.speed);
+        let place = low + (high - low) * rng.random::<f32>();
+        // Nobody drifts towards a corner on the straight part.
+        let room = (place - low).min(high - place) / spacing::STRAIGHT_SECS;
         Crossing {
-            place: low + (high - low) * rng.random::<f32>(),
+            place,
             // Rounding may lead to the period itself.
             time: if time < period { time } else { 0.0 },
             across,
-            along: 0.25 * across * (2.0 * rng.random::<f32>() - 1.0),
+            along: (0.25 * across).min(room) * (2.0 * rng.random::<f32>() - 1.0),
         }
     }
 }

@@ -11,7 +11,13 @@ const DEPTH: u32 = 4;
 
 /// Via points of a way from `from` to `to` into `via` (emptied first): none if the straight way is free. Via points are
 /// `inside`, as far as there is a choice. O(2^DEPTH x obstacles), no allocation beyond `via`.
-pub(super) fn route(from: DVec2, to: DVec2, obstacles: &[Obstacle], inside: &dyn Fn(DVec2) -> bool, via: &mut Vec<DVec2>) {
+pub(super) fn route(
+    from: DVec2,
+    to: DVec2,
+    obstacles: &[Obstacle],
+    inside: &dyn Fn(DVec2) -> bool,
+    via: &mut Vec<DVec2>,
+) {
     via.clear();
     split(from, to, obstacles, inside, DEPTH, via);
 }

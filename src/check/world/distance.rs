@@ -55,6 +55,8 @@ mod tests {
         assert_eq!(to_shape(&shape, DVec2::new(-3.0, 0.0), DVec2::new(3.0, 0.1)), 0.0);
         assert_eq!(to_shape(&shape, DVec2::new(0.1, 0.1), DVec2::new(0.2, 0.1)), 0.0);
         assert!((to_shape(&shape, DVec2::new(-3.0, 2.0), DVec2::new(3.0, 2.0)) - 1.5).abs() < 1e-9);
-        assert!((to_shape(&Shape::disc(Vec2::ZERO, 1.0), DVec2::new(-3.0, 2.0), DVec2::new(3.0, 2.0)) - 1.0).abs() < 1e-6);
+        assert!(
+            (to_shape(&Shape::disc(Vec2::ZERO, 1.0), DVec2::new(-3.0, 2.0), DVec2::new(3.0, 2.0)) - 1.0).abs() < 1e-6
+        );
     }
 }

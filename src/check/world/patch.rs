@@ -253,7 +253,9 @@ fn check_pairs(curves: &[Curve], period: i64, secs: f64, limits: &Limits, report
                 let least = least_distance(a, b, lap * period, secs);
                 report.closest = report.closest.min(least);
                 if least < 2.0 * f64::from(limits.radius) - ROUNDING {
-                    report.violations.push(format!("walkers {i} and {j}, {lap} periods later, come as near as {least:.3} m"));
+                    report
+                        .violations
+                        .push(format!("walkers {i} and {j}, {lap} periods later, come as near as {least:.3} m"));
                 }
             }
         }

@@ -77,7 +77,11 @@ pub fn check_tiles(tiles: &[Placed], torus: Option<Vec2>, limits: &Limits) -> Ti
             let apart = 2.0 * f64::from(limits.radius);
             let time = chord as f64 * secs;
             let bad = least < apart - ROUNDING;
-            (bodies.len(), least, bad.then(|| format!("people near tile {tile} come as near as {least:.3} m at {time:.2} s")))
+            (
+                bodies.len(),
+                least,
+                bad.then(|| format!("people near tile {tile} come as near as {least:.3} m at {time:.2} s")),
+            )
         })
         .collect();
     report.people = found.iter().map(|f| f.0 as f64).sum::<f64>() / chords as f64;
@@ -182,14 +186,16 @@ fn check_hand_overs(tiles: &[Placed], torus: Option<Vec2>, report: &mut TilesRep
                 report.gap = report.gap.max(gap);
                 report.jump = report.jump.max(out.velocity.distance(input.velocity));
             }
-            _ if torus.is_some() => {
-                report.note(format!("nobody takes over at {:.2} at {:.3} s from tile {}", out.place, out.time, out.tile))
-            }
+            _ if torus.is_some() => report
+                .note(format!("nobody takes over at {:.2} at {:.3} s from tile {}", out.place, out.time, out.tile)),
             _ => {}
         }
     }
     if report.gap > 1e-3 || report.jump > 0.1 {
-        report.note(format!("expected gaps below 1 mm and 0.1 m/s, found {:.5} m and {:.4} m/s", report.gap, report.jump));
+        report.note(format!(
+            "expected gaps below 1 mm and 0.1 m/s, found {:.5} m and {:.4} m/s",
+            report.gap, report.jump
+        ));
     }
 }
 
@@ -197,4 +203,3 @@ fn gap(a: &HandOver, b: &HandOver, torus: Option<Vec2>) -> f64 {
     let d = b.place - a.place;
     torus.map_or(d, |t| d - (d / t.as_dvec2()).round() * t.as_dvec2()).length()
 }
-

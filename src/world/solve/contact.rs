@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::track::Track;
 
 /// Centres are kept this much further apart than bodies need, metres: the optimum gives way a little.
-pub(super) const ROOM: f64 = 0.06;
+pub(super) const ROOM: f64 = 0.05;
 /// Distance beyond that of touching that counts as free, metres: more than single precision of stored points loses.
 const SLACK: f64 = 0.002;
 
@@ -122,8 +122,3 @@ fn meet(knots: std::ops::Range<usize>, apart_at: &impl Fn(usize) -> DVec2, apart
         }
     }
 }
-
-pub fn least(a:&Track,b:&Track,shift:i32)->String{ let (range, offset) = overlap(a, b, shift);
-    let d = |k: usize| a.knots[k] - b.knots[(k as isize - offset) as usize];
-    let k=(range.start..range.end-1).min_by(|&i,&j| chord(d(i),d(i+1)).0.total_cmp(&chord(d(j),d(j+1)).0)).unwrap();
-    format!("{:.3} at knot {k} (free {:?}) there {} (free {:?}) place {:.1}",chord(d(k),d(k+1)).0, a.free, k as isize-offset, b.free, a.knots[k]) }

@@ -6,11 +6,11 @@
 //! side, gets another output, or is connected anew.
 
 mod contact;
+mod own;
 mod planner;
 mod repair;
 mod system;
 mod track;
-mod own;
 
 use glam::Vec2;
 use rand::SeedableRng;

@@ -14,7 +14,9 @@ const BORDER_ROOM: f64 = 0.05;
 /// What counts as free of objects and borders.
 const SLACK: f64 = 0.002;
 /// Share of the limits that is aimed at: the optimum gives way a little.
-
+const AIM: f64 = 0.85;
+/// The same of the speed.
+const CLOSE: f64 = 0.95;
 /// Share of the limits that is accepted.
 const KEEP: f64 = 0.99;
 
@@ -83,17 +85,14 @@ impl Ground {
     /// Whether knot `k` is where the body may reach over `edge`.
     fn at_crossing(&self, track: &Track, edge: usize, k: usize) -> bool {
         let time = f64::from(track.first + k as i32) * self.step;
-        let during = |line: &crate::world::frame::Line, sign: f64| {
-            line.edge == edge && (time - line.time) * sign < line.reach
-        };
+        let during =
+            |line: &crate::world::frame::Line, sign: f64| line.edge == edge && (time - line.time) * sign < line.reach;
         during(&track.entry, 1.0) || during(&track.exit, -1.0)
     }
 
     fn off_objects(&self, track: &Track, k: usize) -> bool {
         let (p, q) = (track.knots[k], track.knots[k + 1]);
-        self.obstacles
-            .iter()
-            .all(|o| o.segment_distance(p, q) >= SLACK + track.sag(k))
+        self.obstacles.iter().all(|o| o.segment_distance(p, q) >= SLACK + track.sag(k))
     }
 
     /// What keeps `track` inside and off objects.
@@ -115,9 +114,7 @@ impl Ground {
     /// What keeps `track` off `obstacle`: every time it comes near, it passes on one side.
     fn pass(&self, track: &Track, obstacle: &Obstacle, found: &mut Vec<Push>) {
         let knots = track.moving_knots();
-        let hit = |k: usize| {
-            obstacle.segment_distance(track.knots[k], track.knots[k + 1]) < OBJECT_ROOM
-        };
+        let hit = |k: usize| obstacle.segment_distance(track.knots[k], track.knots[k + 1]) < OBJECT_ROOM;
         let mut k = knots.start - 1;
         while k < knots.end {
             let begin = k;
@@ -134,15 +131,15 @@ impl Ground {
     /// How much the step from point `k` to the next is over what is aimed at; `None` if it is not.
     pub fn haste(&self, track: &Track, k: usize) -> Option<DVec2> {
         let step = track.points[k + 1] - track.points[k];
-        let (length, most) = (step.length(), super::planner::TUNE.aim.max(0.95) * self.speed);
+        let (length, most) = (step.length(), CLOSE * self.speed);
         (length > most).then(|| step * (1.0 - most / length))
     }
 
     /// How much the bend at knot `k` is over what is aimed at; `None` if it is not.
     pub fn excess(&self, track: &Track, k: usize) -> Option<DVec2> {
         let bend = track.bend(k);
-        let most = super::planner::TUNE.aim * self.bend;
-        let slow = super::planner::TUNE.aim * self.turning;
+        let most = AIM * self.bend;
+        let slow = AIM * self.turning;
         let velocity = velocity(track, k);
         let speed = velocity.length();
         // Where `slow * speed` is more than `most`, turning is no matter.
@@ -179,12 +176,3 @@ fn least_length(a: DVec2, b: DVec2) -> f64 {
     let t = (-a.dot(ab) / ab.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
     (a + ab * t).length()
 }
-
-impl Ground { pub fn explain(&self, t:&Track)->String {
- let kn=t.moving_knots();
- let a=kn.clone().map(|k| t.bend(k).length()).fold(0.0,f64::max)/self.step/self.step;
- let v=kn.clone().all(|k| self.slow_enough(t,k));
- let turn: Vec<usize>=kn.clone().filter(|&k| !self.turns_slowly(t,k)).collect();
- let ins: Vec<usize>=(kn.start-1..kn.end+1).filter(|&k| !self.inside(t,k)).collect();
- let ob: Vec<usize>=(kn.start-1..kn.end+1).filter(|&k| !self.off_objects(t,k)).collect();
- format!("acc {a:.2} speed {v} turn {turn:?} border {ins:?} obj {ob:?}") } }

@@ -2,25 +2,26 @@
 
 use glam::DVec2;
 
-use super::contact::{self, Push};
+use super::contact::{self, Push, ROOM};
 use super::own::Ground;
 use super::system::System;
 use super::track::Track;
+use crate::world::Limits;
 use crate::world::frame::FramePatch;
 use crate::world::pairing::Pairing;
 use crate::world::route::route;
 use crate::world::shape::Obstacle;
-use crate::world::Limits;
 
 /// Seconds between knots, about.
 const STEP: f64 = 0.2;
 /// Weight of keeping apart, beside the squares of second differences.
-fn env(n:&str,d:f64)->f64{std::env::var(n).ok().and_then(|v|v.parse().ok()).unwrap_or(d)}
-#[allow(missing_docs)] pub(super) struct Tune{pub push:f64,pub excess:f64,pub hold:f64,pub room:f64,pub fast:f64,pub aim:f64,pub kick:f64,pub swap:f64,pub grow:f64,pub cap:f64,pub share:f64,pub near:f64}
-pub(super) static TUNE: std::sync::LazyLock<Tune>=std::sync::LazyLock::new(||Tune{push:env("PUSH",3.0),excess:env("EXCESS",20.0),hold:env("HOLD",0.003),room:env("ROOM",0.05),fast:env("FAST",3.0),aim:env("AIM",0.85),kick:env("KICK",0.3),swap:env("SWAP",0.3),grow:env("GROW",1.0),cap:env("CAP",30.0),share:env("SHARE",1.0),near:env("NEAR",1.0)});
-
-/// Weight of what is over the limit of acceleration.
+const PUSH: f64 = 3.0;
+/// Weight of what is over the limits of acceleration and turning.
+const EXCESS: f64 = 20.0;
+/// Weight of what is over the limit of speed.
+const HASTE: f64 = 3.0;
 /// Weight of staying where it is.
+const HOLD: f64 = 0.003;
 /// No point moves further in one solve, metres.
 const MOST: f64 = 0.6;
 
@@ -46,8 +47,6 @@ pub(super) struct Planner {
     moved: Vec<u64>,
     found_free: Vec<u64>,
     clock: u64,
-    /// Weight of all limits of a walker, growing while they do not hold.
-    pub pressure: Vec<f64>,
     system: System,
     pushes: Vec<Push>,
     via: Vec<DVec2>,
@@ -82,7 +81,6 @@ impl Planner {
             moved: vec![0; n],
             found_free: vec![0; n],
             clock: 0,
-            pressure: vec![1.0; n],
             system: System::default(),
             pushes: Vec::new(),
             via: Vec::new(),
@@ -117,7 +115,6 @@ impl Planner {
         }
         self.system.apply(track, f64::INFINITY);
         self.solves += 1;
-        self.pressure[j] = 1.0;
         self.touch(j);
     }
 
@@ -151,7 +148,9 @@ impl Planner {
             if !anew && self.moved[i] <= since {
                 continue;
             }
-            if !contact::shifts(a, b, self.grid).all(|shift| i == j && shift == 0 || contact::free(a, b, shift, self.apart)) {
+            if !contact::shifts(a, b, self.grid)
+                .all(|shift| i == j && shift == 0 || contact::free(a, b, shift, self.apart))
+            {
                 return false;
             }
         }
@@ -183,11 +182,10 @@ impl Planner {
         for (i, other) in self.tracks.iter().enumerate() {
             for shift in contact::shifts(track, other, self.grid) {
                 if i != j || shift != 0 {
-                    contact::pushes(track, other, shift, self.apart + TUNE.room, &mut self.pushes);
+                    contact::pushes(track, other, shift, self.apart + ROOM, &mut self.pushes);
                 }
             }
         }
-        self.pushes.iter_mut().for_each(|p| p.gap *= TUNE.share);
         self.yield_to_pushes(j);
     }
 
@@ -195,18 +193,16 @@ impl Planner {
     fn yield_to_pushes(&mut self, j: usize) {
         self.ground.pushes(&self.tracks[j], &mut self.pushes);
         let track = &mut self.tracks[j];
-        let pressure = self.pressure[j];
-        self.pressure[j] = (pressure * TUNE.grow).min(TUNE.cap);
-        self.system.begin(track, TUNE.hold);
+        self.system.begin(track, HOLD);
         for push in self.pushes.iter().filter(|p| track.moving_knots().contains(&p.knot)) {
-            self.system.push(push.knot, TUNE.push * pressure, push.normal, push.gap);
+            self.system.push(push.knot, PUSH, push.normal, push.gap);
         }
         for k in track.moving_knots() {
             if let Some(excess) = self.ground.excess(track, k) {
-                self.system.even(k, TUNE.excess * pressure, excess);
+                self.system.even(k, EXCESS, excess);
             }
             if let Some(excess) = self.ground.haste(track, k) {
-                self.system.slow(k, TUNE.fast * pressure, excess);
+                self.system.slow(k, HASTE, excess);
             }
         }
         self.system.apply(track, MOST);

@@ -8,8 +8,10 @@ use super::Options;
 use super::planner::Planner;
 
 /// Share of stuck walkers that swap outputs; the others are kicked aside.
+const SWAP: f64 = 0.3;
 
 /// How far walkers are kicked (standard deviation), metres.
+const KICK: f64 = 0.3;
 
 /// Half the length of a kick in knots.
 const REACH: f64 = 7.0;
@@ -35,8 +37,6 @@ impl Planner {
         }
         let (bad, outputs, tracks) = best.unwrap_or_default();
         (self.outputs, self.tracks) = (outputs, tracks);
-        for j in 0..self.tracks.len() { self.touch(j); }
-        if std::env::var("EXPLAIN").is_ok() { for &j in &bad { self.explain(j); } }
         (bad, options.restarts)
     }
 
@@ -72,10 +72,9 @@ impl Planner {
             if bad.is_empty() {
                 break;
             }
-            if std::env::var("TRACE").is_ok() { eprintln!("-- {} ",bad.len()); for &j in &bad {self.explain(j);} }
             let before = (self.outputs.clone(), self.tracks.clone());
             for &j in &bad {
-                if rng.random::<f64>() < super::planner::TUNE.swap { self.swap(j, rng) } else { self.kick(j, rng) }
+                if rng.random::<f64>() < SWAP { self.swap(j, rng) } else { self.kick(j, rng) }
             }
             self.relax(options.sweeps);
             let now = self.bad();
@@ -86,7 +85,6 @@ impl Planner {
                 (0..self.tracks.len()).for_each(|j| self.touch(j));
             }
         }
-            if std::env::var("TRACE").is_ok() { eprintln!("{} ",bad.len()); }
         bad
     }
 
@@ -114,7 +112,7 @@ impl Planner {
 
     /// Bends the curve of walker `j` somewhere, to either side.
     fn kick(&mut self, j: usize, rng: &mut ChaCha8Rng) {
-        let size = super::planner::TUNE.kick * (0..4).map(|_| rng.random::<f64>() - 0.5).sum::<f64>() * 3.0_f64.sqrt();
+        let size = KICK * (0..4).map(|_| rng.random::<f64>() - 0.5).sum::<f64>() * 3.0_f64.sqrt();
         let push = DVec2::from_angle(rng.random::<f64>() * std::f64::consts::TAU) * size;
         let track = &mut self.tracks[j];
         let free = track.free.clone();
@@ -130,15 +128,5 @@ impl Planner {
         }
         track.update_knots();
         self.touch(j);
-    }
-}
-
-impl Planner {
-    fn explain(&mut self, j: usize) {
-        let t = &self.tracks[j];
-        let g = &self.ground;
-        eprintln!("bad {j} edges {}->{} secs {:.1} dist {:.1} free {:?} {}", t.entry.edge, t.exit.edge, t.exit.time-t.entry.time, t.entry.place.distance(t.exit.place), t.free, g.explain(t));
-        for (i,b) in self.tracks.iter().enumerate() { for s in super::contact::shifts(t,b,50) { if (i!=j||s!=0) && !super::contact::free(t,b,s,0.5) {
-           eprintln!("   touches {i} shift {s} min {}", super::contact::least(t,b,s)); } } }
     }
 }
