@@ -22,8 +22,7 @@
 //! | `pattern.rs`, `spacing.rs`, `kinds.rs` | crossings on a border, their mirror image, how far apart they stay, types and random patterns |
 //! | `shape.rs`, `frame.rs`, `path.rs`, `patch.rs` | objects, the unsolved patch, a walker's curve, the solved patch |
 //! | `assign.rs`, `pairing.rs`, `route.rs` | which input leads to which output and when, on which side of the objects |
-//! | `solve/` | curves without collisions, within the limits of walking |
-//! | `particles.rs` | the published particle method, to compare |
+//! | `solve/` | curves without collisions, within the limits of walking; the published particle method, to compare |
 //! | `identity.rs`, `lattice.rs` | who is who over all borders and periods, at any time; endless worlds |
 
 mod assign;
@@ -52,4 +51,4 @@ pub use patch::{CrowdPatch, Port, Walker};
 pub use path::Path;
 pub use pattern::{Crossing, Pattern, balanced};
 pub use shape::Shape;
-pub use solve::{Options, Solution, solve};
+pub use solve::{Method, Options, Solution, solve};

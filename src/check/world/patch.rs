@@ -33,6 +33,14 @@ impl PatchReport {
     }
 }
 
+impl PatchReport {
+    /// Whether no body touches another or an object, whatever else is wrong.
+    pub fn collision_free(&self, limits: &Limits) -> bool {
+        let radius = f64::from(limits.radius);
+        self.closest >= 2.0 * radius - ROUNDING && self.objects >= radius - ROUNDING
+    }
+}
+
 /// Checks `patch`: everybody comes in and goes out where, when and as fast as the patterns say, in a straight line
 /// while its body reaches over a border; bodies never touch, nor objects; nobody leaves; limits hold. O(walkers^2 x
 /// length of paths).

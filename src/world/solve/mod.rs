@@ -7,6 +7,7 @@
 
 mod contact;
 mod own;
+mod particles;
 mod planner;
 mod repair;
 mod system;
@@ -22,12 +23,25 @@ use super::{CrowdPatch, Limits, Path, Walker};
 use crate::{Error, Result};
 use planner::Planner;
 
+/// How walkers are led through a patch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Curves that keep all limits.
+    #[default]
+    Curves,
+    /// The particles of the 2009 paper; they collide.
+    Particles,
+}
+
 /// What to spend on a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
     /// Same seed, same patch; other seeds are other versions of the patch.
     pub seed: u64,
+    /// How to do it.
+    pub method: Method,
     /// How often to begin again with another connection of inputs to outputs.
     pub restarts: u32,
     /// How often to mend what is left before beginning again.
@@ -38,7 +52,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { seed: 0, restarts: 60, rounds: 12, sweeps: 14 }
+        Self { seed: 0, method: Method::Curves, restarts: 60, rounds: 12, sweeps: 14 }
     }
 }
 
@@ -76,7 +90,10 @@ pub fn solve(frame: &FramePatch, limits: &Limits, options: &Options) -> Result<S
     let pairing = Pairing::new(frame, limits, &obstacles);
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
     let mut planner = Planner::new(frame, limits, obstacles, pairing);
-    let (bad, restarts) = planner.run(options, &mut rng);
+    let (bad, restarts) = match options.method {
+        Method::Curves => planner.run(options, &mut rng),
+        Method::Particles => (planner.run_particles(&mut rng), 0),
+    };
     let patch = CrowdPatch { frame: frame.clone(), walkers: walkers(frame, &planner) };
     Ok(Solution { patch, bad, restarts, solves: planner.solves })
 }

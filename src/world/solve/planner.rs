@@ -92,19 +92,34 @@ impl Planner {
         self.outputs[input]
     }
 
-    /// Begins the track of walker `j` anew: past the objects, else straight, as even as can be.
-    pub fn lay(&mut self, j: usize) {
+    /// Knots per period.
+    pub fn grid(&self) -> i32 {
+        self.grid
+    }
+
+    /// Distance of centres at which bodies touch.
+    pub fn apart(&self) -> f64 {
+        self.apart
+    }
+
+    /// Makes the track of walker `j` lead to its output.
+    pub fn aim(&mut self, j: usize) {
         let output = self.outputs[j];
         let period = f64::from(self.grid) * self.step;
         let exit = self.pairing.outputs[output].later(f64::from(self.pairing.laps(j, output)) * period);
-        let entry = self.pairing.inputs[j];
+        self.tracks[j].aim(self.pairing.inputs[j], exit, self.step);
+    }
+
+    /// Begins the track of walker `j` anew: past the objects, else straight, as even as can be.
+    pub fn lay(&mut self, j: usize) {
+        self.aim(j);
+        let (entry, exit) = (self.tracks[j].entry, self.tracks[j].exit);
         let (leave, arrive) = (entry.time + entry.reach, exit.time - exit.reach);
         let (from, to) = (entry.at(leave), exit.at(arrive));
         let ground = &self.ground;
         let inside = |p: DVec2| ground.borders.iter().all(|b| (p - b.begin).dot(b.inward) > ground.radius);
         route(from, to, &ground.obstacles, &inside, &mut self.via);
         let track = &mut self.tracks[j];
-        track.aim(entry, exit, self.step);
         track.follow(from, to, &self.via, leave / self.step, arrive / self.step);
         self.system.begin(track, 1e-6);
         let targets = self.via.iter().map(|&via| (track.nearest_knot(via), via));

@@ -89,7 +89,7 @@ impl Planner {
     }
 
     /// Walkers that do not keep all limits.
-    fn bad(&mut self) -> Vec<usize> {
+    pub fn bad(&mut self) -> Vec<usize> {
         (0..self.tracks.len()).filter(|&j| !self.is_free(j)).collect()
     }
 
