@@ -1,7 +1,9 @@
 //! Crowd patches, checked by what shares no code with their solver.
 
 use crowdquilt::check::world::{Placed, check_patch, check_tiles};
-use crowdquilt::world::{CrowdPatch, FramePatch, Lattice, Limits, Options, Pattern, PatternType, solve};
+use crowdquilt::world::{
+    CrowdPatch, FramePatch, Lattice, Limits, Method, Options, Pattern, PatternType, Shape, StaticObject, solve,
+};
 use glam::Vec2;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -47,6 +49,79 @@ fn small_and_dense_patches_are_right() {
     assert_right(4, 0..100);
     assert_right(8, 0..100);
     assert_right(30, 0..60);
+}
+
+#[test]
+fn convex_polygons_of_all_kinds_are_right() {
+    let limits = Limits::default();
+    for corners in 3..=8 {
+        for seed in 0..12 {
+            let angle = |i: usize| i as f32 * std::f32::consts::TAU / corners as f32;
+            // Stretched, so that corners differ.
+            let radius = 8.0 + seed as f32 * 0.5;
+            let outline =
+                (0..corners).map(|i| Vec2::from_angle(angle(i) + 0.1) * Vec2::new(1.25, 1.0) * radius).collect();
+            let types = vec![PatternType::mixed(2, 2); corners];
+            let mut frame = FramePatch::random(outline, 7.0 + seed as f32, &types, &limits, seed).unwrap();
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            for _ in 0..4 {
+                let size = Vec2::new(2.0, 0.6);
+                frame.scatter_object("bench", |at, angle| Shape::oblong(at, size, angle), &limits, &mut rng);
+            }
+            frame.scatter_person("stand", 0.4, &limits, &mut rng);
+            let report = check_patch(&solved(&frame, seed), &limits);
+            assert!(report.ok(), "{corners} corners, seed {seed}: {:?}", report.violations);
+        }
+    }
+}
+
+fn square() -> FramePatch {
+    FramePatch::random_square(8.0, 10.0, &[PatternType::mixed(2, 2); 4], 1).unwrap()
+}
+
+fn refused(change: impl FnOnce(&mut FramePatch)) -> String {
+    let mut frame = square();
+    change(&mut frame);
+    solve(&frame, &Limits::default(), &Options::default()).unwrap_err().to_string()
+}
+
+#[test]
+fn frames_nobody_can_solve_are_refused_with_the_place() {
+    let tree = |x: f32, z: f32| StaticObject { name: "tree".into(), shape: Shape::disc(Vec2::new(x, z), 0.5) };
+    let cases = [
+        (refused(|f| f.outline.truncate(2)), "at least 3 corners"),
+        (refused(|f| f.outline.reverse()), "counter-clockwise"),
+        (refused(|f| f.outline[2] = Vec2::new(1.0, 1.0)), "convex"),
+        (refused(|f| f.outline[2] = Vec2::new(f32::NAN, 1.0)), "corner 2 is not a finite point"),
+        (refused(|f| f.outline.iter_mut().for_each(|p| *p *= 0.0)), "distinct corners"),
+        (refused(|f| f.outline.iter_mut().for_each(|p| *p += 1e9)), "corners"),
+        (refused(|f| f.patterns.truncate(3)), "a pattern for each of 4 edges, found 3"),
+        (refused(|f| f.patterns[1].length = 7.0), "edge 1: expected a pattern of length 8 m, found 7"),
+        (refused(|f| f.patterns[1].period = 11.0), "edge 1: expected period 10 s, found 11"),
+        (refused(|f| f.patterns.iter_mut().for_each(|p| p.period = 1e9)), "expected a period from 2 to 300 s"),
+        (refused(|f| f.patterns[2].inputs[0].across = 0.0), "edge 2: input 0"),
+        (refused(|f| f.patterns[2].inputs[0].across = 0.1), "m/s across"),
+        (refused(|f| f.patterns[0].inputs[1] = f.patterns[0].inputs[0]), "edge 0: expected walkers 0.6 m apart"),
+        (refused(|f| f.patterns[3].inputs.truncate(1)), "as many inputs as outputs, found 7 and 8"),
+        (refused(|f| f.objects.push(tree(8.0, 4.0))), "object \"tree\": expected it inside the outline"),
+        (refused(|f| f.objects.push(tree(f32::INFINITY, 4.0))), "object \"tree\": expected a finite centre"),
+    ];
+    for (found, expected) in cases {
+        assert!(found.contains(expected), "expected {expected:?} in {found:?}");
+    }
+    let place = square().patterns[0].inputs[0].place;
+    assert!(refused(|f| f.objects.push(tree(place, 0.6))).contains("off the crossings of edge 0"));
+}
+
+#[test]
+fn the_particles_of_the_paper_collide() {
+    let free = (0..40).filter(|&seed| {
+        let frame = FramePatch::sample(16, seed).unwrap();
+        let options = Options { seed, method: Method::Particles, ..Options::default() };
+        let patch = solve(&frame, &Limits::default(), &options).unwrap().patch;
+        check_patch(&patch, &Limits::default()).collision_free(&Limits::default())
+    });
+    assert!(free.count() < 10);
 }
 
 #[test]

@@ -9,6 +9,11 @@ use super::spacing::{self, STRAIGHT_SECS};
 use super::{Limits, Pattern, PatternType, Port, Shape};
 use crate::{Error, Result};
 
+/// Largest patch, metres from its first corner.
+const LARGEST: f32 = 150.0;
+/// Periods a patch can have, seconds.
+const PERIODS: std::ops::RangeInclusive<f32> = 2.0..=300.0;
+
 /// Something that never moves.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -108,10 +113,13 @@ impl FramePatch {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let n = outline.len();
         let length = |edge: usize| outline[edge].distance(outline[(edge + 1) % n]);
+        let side = |edge: usize| outline[(edge + 1) % n] - outline[edge % n];
+        let angle = |corner: usize| std::f32::consts::PI - side(corner + n - 1).angle_to(side(corner));
+        let ends = |edge: usize| (spacing::corner_room(angle(edge)), spacing::corner_room(angle(edge + 1)));
         let patterns = types
             .iter()
             .enumerate()
-            .map(|(edge, kind)| kind.generate(length(edge), period, limits, &mut rng))
+            .map(|(edge, kind)| kind.generate_between(ends(edge), length(edge), period, limits, &mut rng))
             .collect::<Result<Vec<_>>>()?;
         super::pattern::balanced(&patterns)?;
         Ok(Self { outline, patterns, objects: Vec::new(), people: Vec::new() })
@@ -175,7 +183,7 @@ impl FramePatch {
         if let Err(error) = check_outline(&self.outline, self.patterns.len()) {
             return vec![error.to_string()];
         }
-        let mut found = Vec::new();
+        let mut found = self.size_problems();
         for (edge, pattern) in self.patterns.iter().enumerate() {
             found.extend(self.pattern_problems(edge, pattern, limits).map(|p| format!("edge {edge}: {p}")));
         }
@@ -187,17 +195,41 @@ impl FramePatch {
         found
     }
 
+    /// Sizes nobody means: they would only eat memory and time.
+    fn size_problems(&self) -> Vec<String> {
+        let far = self.outline.iter().map(|p| p.distance(self.outline[0])).fold(0.0, f32::max);
+        let most = self.outline.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
+        let mut found = Vec::new();
+        if far > LARGEST {
+            found.push(format!("expected a patch of at most {LARGEST} m, found {far} m"));
+        }
+        if most > 10.0 * LARGEST {
+            found.push(format!("expected coordinates near the patch's own origin, found {most} m"));
+        }
+        if !PERIODS.contains(&self.period()) {
+            found.push(format!(
+                "expected a period from {} to {} s, found {}",
+                PERIODS.start(),
+                PERIODS.end(),
+                self.period()
+            ));
+        }
+        found
+    }
+
     /// Walkers who meet near a corner before either can step aside, or whose bodies reach over the next edge.
     fn corner_problems(&self, limits: &Limits) -> Vec<String> {
-        let ports = self.inputs().map(|p| (p, true)).chain(self.outputs().map(|p| (p, false)));
-        let lines: Vec<Line> = ports.map(|(port, inward)| self.line(port, inward, limits)).collect();
+        let inputs = self.inputs().map(|port| self.line(port, true, limits));
+        let lines: Vec<Line> = inputs.chain(self.outputs().map(|port| self.line(port, false, limits))).collect();
         let borders: Vec<Border> = (0..self.outline.len()).map(|edge| self.border(edge)).collect();
         let mut found = Vec::new();
         for (i, a) in lines.iter().enumerate() {
             let others = borders.iter().enumerate().filter(|&(edge, _)| edge != a.edge);
             let cut = others.filter(|(_, b)| {
+                // The deep end of the straight part is before the time of an output, after that of an input.
+                let deep = if a.velocity.dot(borders[a.edge].inward) > 0.0 { a.reach } else { -a.reach };
                 let depth = |s: f64| (a.at(a.time + s) - b.begin).dot(b.inward);
-                depth(-a.reach).min(depth(a.reach)) < f64::from(spacing::least_depth(limits))
+                depth(0.0).min(depth(deep)) < f64::from(spacing::least_depth(limits))
             });
             found.extend(cut.map(|(edge, _)| format!("a crossing of edge {} is too near to edge {edge}", a.edge)));
             for b in lines[i + 1..].iter().filter(|b| b.edge != a.edge && b.place.distance_squared(a.place) < 16.0) {

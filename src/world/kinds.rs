@@ -96,14 +96,29 @@ impl PatternType {
         Self { inputs: turned(self.outputs), outputs: turned(self.inputs) }
     }
 
-    /// A random pattern of this type whose walkers stay apart on the border.
+    /// A random pattern of this type whose walkers stay apart on the border, for an edge between right angles.
     ///
     /// # Errors
     /// If the edge is too short, or too many people are asked for: says how many found a place.
     pub fn generate(&self, length: f32, period: f32, limits: &Limits, rng: &mut ChaCha8Rng) -> Result<Pattern> {
+        self.generate_between((CORNER, CORNER), length, period, limits, rng)
+    }
+
+    /// The same, no nearer to the ends of the edge than `ends` (metres).
+    ///
+    /// # Errors
+    /// As [`Self::generate`].
+    pub fn generate_between(
+        &self,
+        ends: (f32, f32),
+        length: f32,
+        period: f32,
+        limits: &Limits,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<Pattern> {
         let mut problem = String::new();
         for _ in 0..20 {
-            match self.try_generate(length, period, limits, rng) {
+            match self.try_generate(ends, length, period, limits, rng) {
                 Ok(pattern) => return Ok(pattern),
                 Err(found) => problem = found,
             }
@@ -113,6 +128,7 @@ impl PatternType {
 
     fn try_generate(
         &self,
+        ends: (f32, f32),
         length: f32,
         period: f32,
         limits: &Limits,
@@ -128,7 +144,7 @@ impl PatternType {
                 }
                 let placed = pattern.inputs.len() + pattern.outputs.len();
                 let crossing = flow
-                    .place_in(&pattern, inward, limits, rng)
+                    .place_in(&pattern, ends, inward, limits, rng)
                     .ok_or_else(|| format!("expected room for {total} crossings, found room for {placed}"))?;
                 if inward { pattern.inputs.push(crossing) } else { pattern.outputs.push(crossing) }
             }
@@ -139,8 +155,15 @@ impl PatternType {
 
 impl Flow {
     /// One more crossing that keeps its distance from those of `pattern`.
-    fn place_in(&self, pattern: &Pattern, inward: bool, limits: &Limits, rng: &mut ChaCha8Rng) -> Option<Crossing> {
-        let (low, high) = self.span(pattern.length)?;
+    fn place_in(
+        &self,
+        pattern: &Pattern,
+        ends: (f32, f32),
+        inward: bool,
+        limits: &Limits,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Crossing> {
+        let (low, high) = self.span(pattern.length, ends)?;
         let apart = 2.0 * limits.radius + spacing::GAP;
         (0..400).find_map(|_| {
             let crossing = self.random((low, high), pattern.period, limits, rng);
@@ -153,8 +176,8 @@ impl Flow {
     }
 
     /// The part of the edge in metres that is in the flow and off the corners.
-    fn span(&self, length: f32) -> Option<(f32, f32)> {
-        let (low, high) = ((self.place.0 * length).max(CORNER), (self.place.1 * length).min(length - CORNER));
+    fn span(&self, length: f32, ends: (f32, f32)) -> Option<(f32, f32)> {
+        let (low, high) = ((self.place.0 * length).max(ends.0), (self.place.1 * length).min(length - ends.1));
         (low <= high).then_some((low, high))
     }
 

@@ -10,9 +10,17 @@ use super::{Crossing, Limits, Pattern};
 pub(super) const STRAIGHT_SECS: f32 = 0.8;
 /// Bodies on the straight parts are at least this far from touching, metres.
 pub(super) const GAP: f32 = 0.1;
-/// Straight parts stay this far from the ends of the border, metres: two people who come in on either side of a right
-/// angle can still let each other pass.
+/// Straight parts stay this far from a right angle, metres.
 pub(super) const CORNER: f32 = 1.5;
+
+/// How far straight parts stay from a corner of interior `angle` (radians), metres: two people who come in on either
+/// side of it can still let each other pass. Sharp corners need more room.
+pub(super) fn corner_room(angle: f32) -> f32 {
+    // Both are this deep before they can have stepped aside, and stay on their side of the bisector.
+    const DEPTH: f32 = 0.95;
+    let half = (0.5 * angle).max(0.1);
+    ((0.3 + DEPTH * half.cos()) / half.sin() + 0.126).max(0.8)
+}
 
 /// Least distance of the centres of two crossings' walkers while both are on their straight parts, over all periods.
 pub(super) fn distance(a: (&Crossing, bool), b: (&Crossing, bool), period: f32) -> f32 {

@@ -239,12 +239,14 @@ fn depth(patch: &CrowdPatch, edge: usize, p: DVec2) -> f64 {
     (end - begin).normalize().perp_dot(p - begin)
 }
 
-/// Whether the walker's body may reach over `edge` at some time of a chord: when it crosses it, or is beyond it.
+/// Whether the walker's body may reach over `edge` at some time of a chord: when it crosses it, or is in the next patch.
 fn crosses(patch: &CrowdPatch, walker: &Walker, edge: usize, time: f64, secs: f64, limits: &Limits) -> bool {
     let reach = |gate: &Gate| f64::from(limits.radius) / f64::from(gate.crossing.across);
     let input = gate(patch, walker.input, true, 0);
     let output = gate(patch, walker.output, false, walker.laps);
-    (walker.input.edge == edge && time < input.time + reach(&input))
+    time < input.time
+        || time + secs > output.time
+        || (walker.input.edge == edge && time < input.time + reach(&input))
         || (walker.output.edge == edge && time + secs > output.time - reach(&output))
 }
 
