@@ -2,7 +2,8 @@
 
 use crowdquilt::check::world::{Placed, check_patch, check_tiles};
 use crowdquilt::world::{
-    CrowdPatch, FramePatch, Lattice, Limits, Method, Options, Pattern, PatternType, Shape, StaticObject, solve,
+    Common, CrowdPatch, FramePatch, Lattice, Limits, Method, Options, Pattern, PatternType, Shape, StaticObject, solve,
+    vary,
 };
 use glam::Vec2;
 use rand::SeedableRng;
@@ -217,4 +218,52 @@ fn everybody_is_somebody_else_and_stays_at_any_time() {
         assert!(moved.len() * 100 > people.len() * 98, "{} of {}", moved.len(), people.len());
         assert!(moved.iter().all(|&m| m < 0.2), "{moved:?}");
     }
+}
+
+#[test]
+fn versions_with_the_same_state_can_follow_each_other() {
+    let limits = Limits::default();
+    for seed in 0..40 {
+        let frame = FramePatch::sample(16, seed).unwrap();
+        let base = solved(&frame, seed);
+        let version = vary(&base, &frame, Common::State, &limits, &Options { seed, ..Options::default() }).unwrap();
+        assert!(version.ok(), "seed {seed}: {:?}", version.bad);
+        assert!(check_patch(&version.patch, &limits).ok());
+        let mut differ = 0;
+        for (a, b) in base.walkers.iter().zip(&version.patch.walkers) {
+            assert_eq!((a.input, a.output, a.laps), (b.input, b.output, b.laps));
+            let (begin, end) = a.path.span();
+            for lap in (begin / 10.0).ceil() as i32..=(end / 10.0).floor() as i32 {
+                let time = f64::from(lap) * 10.0;
+                assert!(a.path.position(time).distance(b.path.position(time)) < 1e-5);
+                assert!(a.path.velocity(time).distance(b.path.velocity(time)) < 1e-4);
+                assert!(a.path.acceleration(time).distance(b.path.acceleration(time)) < 1e-3);
+            }
+            differ += usize::from(a.path.points.iter().zip(&b.path.points).any(|(p, q)| p.distance(*q) > 0.1));
+        }
+        assert!(differ > 4, "only {differ} of 16 walkers go another way");
+    }
+}
+
+#[test]
+fn other_objects_leave_connections_as_they_are() {
+    let limits = Limits::default();
+    let mut solved_versions = 0;
+    for seed in 0..40 {
+        let frame = FramePatch::sample(12, seed).unwrap();
+        let base = solved(&frame, seed);
+        let mut other = FramePatch { objects: Vec::new(), people: Vec::new(), ..frame };
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        other.scatter_object("tree", |at, _| Shape::disc(at, 0.3), &limits, &mut rng);
+        let version =
+            vary(&base, &other, Common::Connections, &limits, &Options { seed, ..Options::default() }).unwrap();
+        if version.ok() {
+            solved_versions += 1;
+            assert!(check_patch(&version.patch, &limits).ok());
+            let ends =
+                |patch: &CrowdPatch| patch.walkers.iter().map(|w| (w.input, w.output, w.laps)).collect::<Vec<_>>();
+            assert_eq!(ends(&base), ends(&version.patch));
+        }
+    }
+    assert!(solved_versions >= 38, "{solved_versions} of 40");
 }

@@ -51,4 +51,4 @@ pub use patch::{CrowdPatch, Port, Walker};
 pub use path::Path;
 pub use pattern::{Crossing, Pattern, balanced};
 pub use shape::Shape;
-pub use solve::{Method, Options, Solution, solve};
+pub use solve::{Common, Method, Options, Solution, solve, vary};

@@ -73,6 +73,12 @@ impl Pairing {
         self.laps[input * self.len() + output]
     }
 
+    /// Prescribes the periods between them.
+    pub fn set_laps(&mut self, input: usize, output: usize, laps: u32) {
+        let n = self.len();
+        self.laps[input * n + output] = laps;
+    }
+
     /// The output of every input into `columns`: of least cost, give or take `noise`.
     pub fn assign(&mut self, noise: f64, rng: &mut ChaCha8Rng, columns: &mut Vec<usize>) {
         self.noisy.clear();

@@ -12,6 +12,7 @@ mod planner;
 mod repair;
 mod system;
 mod track;
+mod version;
 
 use glam::Vec2;
 use rand::SeedableRng;
@@ -22,6 +23,7 @@ use super::pairing::Pairing;
 use super::{CrowdPatch, Limits, Path, Walker};
 use crate::{Error, Result};
 use planner::Planner;
+pub use version::{Common, vary};
 
 /// How walkers are led through a patch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -83,17 +85,26 @@ impl Solution {
 /// # Errors
 /// If the frame cannot be solved by anybody ([`FramePatch::problems`]): names the first problem.
 pub fn solve(frame: &FramePatch, limits: &Limits, options: &Options) -> Result<Solution> {
+    fill(frame, limits, options, |planner, rng| match options.method {
+        Method::Curves => planner.run(options, rng),
+        Method::Particles => (planner.run_particles(rng), 0),
+    })
+}
+
+/// Fills `frame` by `search`, which returns who is left and how often it began again.
+fn fill(
+    frame: &FramePatch,
+    limits: &Limits,
+    options: &Options,
+    search: impl FnOnce(&mut Planner, &mut ChaCha8Rng) -> (Vec<usize>, u32),
+) -> Result<Solution> {
     if let Some(problem) = frame.problems(limits).into_iter().next() {
         return Err(Error::invalid("patch", "frame", problem));
     }
     let obstacles = frame.obstacles(limits);
     let pairing = Pairing::new(frame, limits, &obstacles);
-    let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
     let mut planner = Planner::new(frame, limits, obstacles, pairing);
-    let (bad, restarts) = match options.method {
-        Method::Curves => planner.run(options, &mut rng),
-        Method::Particles => (planner.run_particles(&mut rng), 0),
-    };
+    let (bad, restarts) = search(&mut planner, &mut ChaCha8Rng::seed_from_u64(options.seed));
     let patch = CrowdPatch { frame: frame.clone(), walkers: walkers(frame, &planner) };
     Ok(Solution { patch, bad, restarts, solves: planner.solves })
 }

@@ -40,6 +40,10 @@ pub(super) struct Planner {
     pub step: f64,
     /// Curves computed so far.
     pub solves: u64,
+    /// Whether outputs must not be swapped.
+    pub keep_connections: bool,
+    /// Whether points around the begin of the period must not move.
+    pub keep_state: bool,
     /// Knots per period.
     grid: i32,
     apart: f64,
@@ -76,6 +80,8 @@ impl Planner {
             ground,
             step,
             solves: 0,
+            keep_connections: false,
+            keep_state: false,
             grid: grid as i32,
             apart: 2.0 * f64::from(limits.radius),
             moved: vec![0; n],
@@ -220,8 +226,16 @@ impl Planner {
                 self.system.slow(k, HASTE, excess);
             }
         }
+        if self.keep_state {
+            track.free.clone().filter(|&k| at_begin(track, k, self.grid)).for_each(|k| self.system.nail(k));
+        }
         self.system.apply(track, MOST);
         self.solves += 1;
         self.touch(j);
     }
+}
+
+/// Whether point `k` has a share in the curve at the begin of a period.
+pub(super) fn at_begin(track: &Track, k: usize, grid: i32) -> bool {
+    (track.first + k as i32 + 1).rem_euclid(grid) <= 2
 }

@@ -5,7 +5,8 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::Options;
-use super::planner::Planner;
+use super::planner::{Planner, at_begin};
+use super::track::Track;
 
 /// Share of stuck walkers that swap outputs; the others are kicked aside.
 const SWAP: f64 = 0.3;
@@ -20,24 +21,42 @@ const UNWALKABLE: f64 = 30.0;
 /// Noise of costs, growing with every restart.
 const NOISE: f64 = 0.6;
 
+/// What a restart came to.
+#[derive(Clone, Debug)]
+pub(super) struct Attempt {
+    bad: Vec<usize>,
+    outputs: Vec<usize>,
+    tracks: Vec<Track>,
+}
+
 impl Planner {
     /// Searches until all walkers are free or the options are spent. Returns who is not, for the best attempt, and the
     /// number of restarts.
     pub fn run(&mut self, options: &Options, rng: &mut ChaCha8Rng) -> (Vec<usize>, u32) {
-        let mut best: Option<(Vec<usize>, Vec<usize>, Vec<super::track::Track>)> = None;
+        let mut best = None;
         for restart in 0..=options.restarts {
             self.connect(NOISE * f64::from(restart.min(3) + 1), rng);
             let bad = self.mend(options, rng);
             if bad.is_empty() {
                 return (bad, restart);
             }
-            if best.as_ref().is_none_or(|(least, ..)| bad.len() < least.len()) {
-                best = Some((bad, self.outputs.clone(), self.tracks.clone()));
-            }
+            self.keep_best(bad, &mut best);
         }
-        let (bad, outputs, tracks) = best.unwrap_or_default();
-        (self.outputs, self.tracks) = (outputs, tracks);
-        (bad, options.restarts)
+        (self.restore(best), options.restarts)
+    }
+
+    /// Remembers the present attempt if fewer are `bad` than in `best`.
+    pub fn keep_best(&self, bad: Vec<usize>, best: &mut Option<Attempt>) {
+        if best.as_ref().is_none_or(|best| bad.len() < best.bad.len()) {
+            *best = Some(Attempt { bad, outputs: self.outputs.clone(), tracks: self.tracks.clone() });
+        }
+    }
+
+    /// Goes back to the best attempt; returns who is not free in it.
+    pub fn restore(&mut self, best: Option<Attempt>) -> Vec<usize> {
+        let Some(best) = best else { return Vec::new() };
+        (self.outputs, self.tracks) = (best.outputs, best.tracks);
+        best.bad
     }
 
     /// Connects all inputs to outputs, avoiding connections that cannot be walked even alone.
@@ -65,7 +84,7 @@ impl Planner {
     }
 
     /// Relaxes and repairs by turns, going back where that made it worse; returns who is left.
-    fn mend(&mut self, options: &Options, rng: &mut ChaCha8Rng) -> Vec<usize> {
+    pub fn mend(&mut self, options: &Options, rng: &mut ChaCha8Rng) -> Vec<usize> {
         self.relax(options.sweeps);
         let mut bad = self.bad();
         for _ in 0..options.rounds {
@@ -74,7 +93,7 @@ impl Planner {
             }
             let before = (self.outputs.clone(), self.tracks.clone());
             for &j in &bad {
-                if rng.random::<f64>() < SWAP { self.swap(j, rng) } else { self.kick(j, rng) }
+                if !self.keep_connections && rng.random::<f64>() < SWAP { self.swap(j, rng) } else { self.kick(j, rng) }
             }
             self.relax(options.sweeps);
             let now = self.bad();
@@ -111,7 +130,7 @@ impl Planner {
     }
 
     /// Bends the curve of walker `j` somewhere, to either side.
-    fn kick(&mut self, j: usize, rng: &mut ChaCha8Rng) {
+    pub fn kick(&mut self, j: usize, rng: &mut ChaCha8Rng) {
         let size = KICK * (0..4).map(|_| rng.random::<f64>() - 0.5).sum::<f64>() * 3.0_f64.sqrt();
         let push = DVec2::from_angle(rng.random::<f64>() * std::f64::consts::TAU) * size;
         let track = &mut self.tracks[j];
@@ -120,7 +139,12 @@ impl Planner {
             return;
         }
         let middle = rng.random_range(free.clone()) as f64;
+        let (nailed, grid) = (self.keep_state, self.grid());
+        let track = &mut self.tracks[j];
         for k in free {
+            if nailed && at_begin(track, k, grid) {
+                continue;
+            }
             let far = (k as f64 - middle) / REACH;
             if far.abs() < 1.0 {
                 track.points[k] += push * (1.0 - far * far).powi(2);

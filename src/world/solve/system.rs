@@ -13,6 +13,9 @@ const KNOT: [f64; 3] = [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0];
 /// Shares in the second difference at k.
 const BEND: [f64; 3] = [1.0, -2.0, 1.0];
 
+/// Weight that no other has any force against.
+const NAIL: f64 = 1e9;
+
 /// Normal matrix and right side, kept from one solve to the next for their memory.
 #[derive(Clone, Debug, Default)]
 pub(super) struct System {
@@ -84,6 +87,13 @@ impl System {
                 }
             }
         }
+    }
+
+    /// Holds point `k` where it is.
+    pub fn nail(&mut self, k: usize) {
+        let row = 2 * (k - self.begin);
+        self.right[row..row + 2].fill(0.0);
+        self.rows[row..row + 2].iter_mut().for_each(|row| row[0] += NAIL);
     }
 
     /// First row of the point before `above`, if that is free.
