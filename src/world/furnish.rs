@@ -40,7 +40,12 @@ impl FramePatch {
         true
     }
 
-    fn find_room(&self, make: impl Fn(Vec2, f32) -> Shape, limits: &Limits, rng: &mut ChaCha8Rng) -> Option<Shape> {
+    pub(super) fn find_room(
+        &self,
+        make: impl Fn(Vec2, f32) -> Shape,
+        limits: &Limits,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Shape> {
         let least = self.outline.iter().copied().fold(Vec2::INFINITY, Vec2::min);
         let most = self.outline.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max);
         let others = self.obstacles(limits);

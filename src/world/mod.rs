@@ -24,6 +24,8 @@
 //! | `assign.rs`, `pairing.rs`, `route.rs` | which input leads to which output and when, on which side of the objects |
 //! | `solve/` | curves without collisions, within the limits of walking; the published particle method, to compare |
 //! | `identity.rs`, `lattice.rs` | who is who over all borders and periods, at any time; endless worlds |
+//! | `template.rs`, `plan.rs`, `furnish.rs` | what patches contain, which is where, the world that follows |
+//! | `scenes.rs` | the street and the city of the paper |
 
 mod assign;
 mod band;
@@ -37,10 +39,13 @@ mod pairing;
 mod patch;
 mod path;
 mod pattern;
+mod plan;
 mod route;
+pub mod scenes;
 mod shape;
 mod solve;
 mod spacing;
+mod template;
 
 pub use frame::{Border, FramePatch, Standing, StaticObject};
 pub use identity::{Identities, Link, Person};
@@ -50,5 +55,7 @@ pub use limits::Limits;
 pub use patch::{CrowdPatch, Port, Walker};
 pub use path::Path;
 pub use pattern::{Crossing, Pattern, balanced};
+pub use plan::Plan;
 pub use shape::Shape;
 pub use solve::{Common, Method, Options, Solution, solve, vary};
+pub use template::{Amount, Furnishing, Gathering, Prototype, Template};
