@@ -73,7 +73,7 @@ impl Lattice {
         }
         for edge in [1, 2] {
             let (other, _) = self.neighbour(index, edge);
-            let (own, theirs) = (&patch.frame.patterns[edge], &self.patches[other].frame.patterns[edge + 2 & 3]);
+            let (own, theirs) = (&patch.frame.patterns[edge], &self.patches[other].frame.patterns[(edge + 2) % 4]);
             let mirror = own.mirror();
             let same = |a: &[super::Crossing], b: &[super::Crossing]| {
                 a.len() == b.len()

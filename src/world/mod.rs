@@ -25,7 +25,8 @@
 //! | `solve/` | curves without collisions, within the limits of walking; the published particle method, to compare |
 //! | `identity.rs`, `lattice.rs` | who is who over all borders and periods, at any time; endless worlds |
 //! | `template.rs`, `plan.rs`, `furnish.rs` | what patches contain, which is where, the world that follows |
-//! | `scenes.rs` | the street and the city of the paper |
+//! | `stream.rs` | an endless world around a camera |
+//! | `scenes.rs`, `measure.rs` | the street and the city of the paper; how long patches take |
 
 mod assign;
 mod band;
@@ -35,6 +36,7 @@ mod identity;
 mod kinds;
 mod lattice;
 mod limits;
+mod measure;
 mod pairing;
 mod patch;
 mod path;
@@ -45,6 +47,7 @@ pub mod scenes;
 mod shape;
 mod solve;
 mod spacing;
+mod stream;
 mod template;
 
 pub use frame::{Border, FramePatch, Standing, StaticObject};
@@ -52,10 +55,12 @@ pub use identity::{Identities, Link, Person};
 pub use kinds::{Flow, PatternType, balance};
 pub use lattice::{Lattice, Sighting};
 pub use limits::Limits;
+pub use measure::{Creation, measure_creation};
 pub use patch::{CrowdPatch, Port, Walker};
 pub use path::Path;
 pub use pattern::{Crossing, Pattern, balanced};
 pub use plan::Plan;
 pub use shape::Shape;
 pub use solve::{Common, Method, Options, Solution, solve, vary};
+pub use stream::Stream;
 pub use template::{Amount, Furnishing, Gathering, Prototype, Template};

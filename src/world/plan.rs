@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::identity::mix;
 use super::lattice::rectangle;
-use super::{Common, CrowdPatch, FramePatch, Lattice, Limits, Options, Pattern, Template, solve, vary};
+use super::{Common, CrowdPatch, FramePatch, Lattice, Limits, Options, Pattern, PatternType, Template, solve, vary};
 use crate::{Error, Result};
 
 /// Attempts to furnish and solve a patch; the last is without objects.
@@ -139,19 +139,24 @@ impl Plan {
         let outer = if edge == 1 { column + 1 == columns } else { row + 1 == rows };
         let (right, above) = if edge == 1 { ((column + 1) % columns, row) } else { (column, (row + 1) % rows) };
         let (here, there) = (self.cells[row][column], self.cells[above][right]);
-        let [a, b] = [here, there].map(|index| &self.templates[index]);
-        let kind = match (a.borders.get(&b.name), b.borders.get(&a.name)) {
-            (Some(kind), other) if here <= there || other.is_none() => *kind,
-            (_, Some(kind)) => kind.mirror(),
-            _ => return Ok(Pattern::empty(self.side, self.period)),
-        };
-        if outer && !self.endless {
-            return Ok(Pattern::empty(self.side, self.period));
-        }
         let place = [edge, column, row].into_iter().fold(self.seed, |hash, part| mix(hash, part as u64));
-        let which = place % self.patterns.max(1);
-        let seed = [here, there, edge].into_iter().fold(mix(self.seed, which), |hash, part| mix(hash, part as u64));
-        kind.generate(self.side, self.period, &Limits::default(), &mut ChaCha8Rng::seed_from_u64(seed))
+        match self.border_type(here.min(there), here.max(there)) {
+            Some(kind) if self.endless || !outer => {
+                // One of a few patterns of the type, as the template that comes first sees it.
+                let types = [here.min(there), here.max(there)].map(|index| index as u64);
+                let seed = [types[0], types[1], place % self.patterns.max(1)].into_iter().fold(self.seed, mix);
+                let mut rng = ChaCha8Rng::seed_from_u64(seed);
+                let pattern = kind.generate(self.side, self.period, &Limits::default(), &mut rng)?;
+                Ok(if here <= there { pattern } else { pattern.mirror() })
+            }
+            _ => Ok(Pattern::empty(self.side, self.period)),
+        }
+    }
+
+    /// Pattern type between two templates, as the first sees it.
+    fn border_type(&self, first: usize, second: usize) -> Option<PatternType> {
+        let [a, b] = [first, second].map(|index| &self.templates[index]);
+        a.borders.get(&b.name).copied().or_else(|| b.borders.get(&a.name).map(PatternType::mirror))
     }
 
     /// The solved patch at a column and row: a function of the plan and the place. Objects that leave no way through are
@@ -185,9 +190,11 @@ impl Plan {
         let mut bare = patch.frame.clone();
         bare.objects.clear();
         bare.people.clear();
-        for attempt in 0..2 {
-            let frame = self.furnished(&bare, column, row, mix(place, attempt), false);
-            let options = Options { restarts: 1, rounds: 6, ..self.options(place, attempt) };
+        for attempt in 0..3 {
+            // In the end other ways past the same objects will do.
+            let other = || self.furnished(&bare, column, row, mix(place, attempt), false);
+            let frame = if attempt < 2 { other() } else { patch.frame.clone() };
+            let options = Options { restarts: 0, rounds: 4, ..self.options(place, attempt) };
             let version = vary(patch, &frame, Common::Connections, &Limits::default(), &options);
             if let Some(version) = version.ok().filter(super::Solution::ok) {
                 return version.patch;

@@ -21,7 +21,7 @@ pub fn street(seed: u64) -> Result<Plan> {
     let row = |c: &str| c.repeat(16);
     let map = [row("b"), row("s"), row("s"), row("b")].join("\n");
     let plan = Plan::from_text(&map, vec![('s', street), ('b', building)])?;
-    // Ten patterns, as in the paper: three types in both directions.
+    // Ten patterns, as in the paper: three of each of the three types of border, and the empty one.
     Ok(Plan { endless: true, patterns: 3, seed, ..plan })
 }
 
@@ -40,27 +40,30 @@ pub fn city(side: usize, endless: bool, seed: u64) -> Result<Plan> {
         .bordered("park", PatternType::mixed(2, 2))
         .bordered("entrance", PatternType::door(1, 1, 0.3, 0.7));
     let street = Template::new("street", "asphalt")
-        .furnished("lamp", Disc(0.15), Amount::Number(1, 1))
-        .furnished("bin", Disc(0.25), Amount::Number(0, 1))
+        .furnished("lamp", Disc(0.15), Amount::Density(0.006))
+        .furnished("bin", Disc(0.25), Amount::Density(0.003))
         .gathered("wait", (1, 1), Amount::Density(0.006))
-        .bordered("street", PatternType::lanes(5, 5))
+        .bordered("street", PatternType::lanes(4, 4))
         .bordered("park", PatternType::mixed(2, 2))
         .bordered("entrance", PatternType::door(1, 1, 0.3, 0.7));
     let park = Template::new("park", "grass")
-        .furnished("tree", Disc(0.35), Amount::Number(1, 3))
-        .furnished("bench", Oblong(1.8, 0.6), Amount::Number(0, 2))
+        .furnished("tree", Disc(0.35), Amount::Number(0, 2))
+        .furnished("bench", Oblong(1.8, 0.6), Amount::Number(0, 1))
         .gathered("sit", (1, 2), Amount::Density(0.008))
         .bordered("park", PatternType::mixed(2, 2))
         .bordered("entrance", PatternType::door(1, 1, 0.3, 0.7));
     let entrance = Template::new("entrance", "floor").bordered("entrance", PatternType::door(1, 1, 0.4, 0.6));
+    let building = Template::new("building", "roof");
     let key = |x: usize, z: usize| match (x % 8, z % 8) {
         (0, _) | (_, 0) => 's',
         (4, 4) => 'p',
         (3..=5, 3..=5) => 'g',
-        _ => 'e',
+        (4, _) | (_, 4) => 'e',
+        _ => 'b',
     };
     let rows: Vec<String> = (0..side).map(|z| (0..side).map(|x| key(x, z)).collect()).collect();
-    let palette = vec![('p', place), ('s', street), ('g', park), ('e', entrance)];
+    let palette = vec![('p', place), ('s', street), ('g', park), ('e', entrance), ('b', building)];
     let plan = Plan::from_text(&rows.join("\n"), palette)?;
-    Ok(Plan { endless, patterns: 2, seed, ..plan })
+    // Twenty patterns or so, as in the paper.
+    Ok(Plan { endless, patterns: 3, seed, ..plan })
 }

@@ -122,3 +122,67 @@ fn meet(knots: std::ops::Range<usize>, apart_at: &impl Fn(usize) -> DVec2, apart
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::frame::Line;
+    use proptest::prelude::*;
+
+    fn track(first: i32, points: &[(f64, f64)]) -> Track {
+        let line = Line { edge: 0, place: DVec2::ZERO, velocity: DVec2::X, time: 0.0, reach: 0.1 };
+        let mut at = DVec2::ZERO;
+        let mut points: Vec<DVec2> = points
+            .iter()
+            .map(|&(x, z)| {
+                at += DVec2::new(x, z);
+                at
+            })
+            .collect();
+        // The ends are straight, as at crossings.
+        let n = points.len();
+        points[0] = 2.0 * points[1] - points[2];
+        points[n - 1] = 2.0 * points[n - 2] - points[n - 3];
+        let mut track = Track { first, free: 2..n - 2, knots: points.clone(), points, ..Track::new(line) };
+        track.update_knots();
+        track
+    }
+
+    proptest! {
+        /// What counts as free is free at every moment, by dense sampling of the curves.
+        #[test]
+        fn free_tracks_never_touch(
+            a in prop::collection::vec((-0.3f64..0.3, -0.3f64..0.3), 8..20),
+            b in prop::collection::vec((-0.3f64..0.3, -0.3f64..0.3), 8..20),
+            lag in -8i32..8,
+        ) {
+            let (a, b) = (track(0, &a), track(lag, &b));
+            let place = |t: &Track, time: f64| {
+                let k = (time.floor() as i32 - t.first) as usize;
+                let (u, p) = (time.fract(), &t.points[k - 1..k + 3]);
+                let v = 1.0 - u;
+                (p[0] * v * v * v + p[1] * (3.0 * u * u * u - 6.0 * u * u + 4.0)
+                    + p[2] * (-3.0 * u * u * u + 3.0 * u * u + 3.0 * u + 1.0) + p[3] * u * u * u) / 6.0
+            };
+            let (begin, end) = (a.first.max(b.first) + 1, a.end().min(b.end()) - 2);
+            let times = (begin * 64..end * 64).map(|i| f64::from(i) / 64.0 + 1e-9);
+            let nearest = times.map(|time| place(&a, time).distance(place(&b, time))).fold(f64::INFINITY, f64::min);
+            if free(&a, &b, 0, 0.5) {
+                prop_assert!(nearest >= 0.5, "{nearest}");
+            }
+            if a.knots.iter().all(|p| b.knots.iter().all(|q| p.distance(*q) > 1.5)) {
+                prop_assert!(free(&a, &b, 0, 0.5));
+            }
+        }
+    }
+
+    #[test]
+    fn shifts_are_all_that_overlap() {
+        let (a, b) = (track(3, &[(0.1, 0.0); 30]), track(-7, &[(0.1, 0.0); 12]));
+        let overlaps = |lap: i32| b.first + lap * 10 < a.end() && a.first < b.end() + lap * 10;
+        assert_eq!(
+            shifts(&a, &b, 10).collect::<Vec<_>>(),
+            (-9..9).filter(|&l| overlaps(l)).map(|l| l * 10).collect::<Vec<_>>()
+        );
+    }
+}

@@ -110,3 +110,71 @@ impl System {
         track.update_knots();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::frame::Line;
+    use proptest::prelude::*;
+
+    fn track(points: Vec<(f64, f64)>) -> Track {
+        let line = Line { edge: 0, place: DVec2::ZERO, velocity: DVec2::X, time: 0.0, reach: 0.1 };
+        let points: Vec<DVec2> = points.into_iter().map(|(x, z)| DVec2::new(x, z)).collect();
+        let mut track = Track { free: 3..points.len() - 3, knots: points.clone(), points, ..Track::new(line) };
+        track.update_knots();
+        track
+    }
+
+    proptest! {
+        /// The solution is where the sum of squares, written out, is flat in every direction.
+        #[test]
+        fn the_solution_is_the_least_sum_of_squares(
+            points in prop::collection::vec((-1.0f64..1.0, -1.0f64..1.0), 9..16),
+            push in (3usize..6, 0.1f64..9.0, 0.0f64..6.2, -0.5f64..0.5),
+            even in (3usize..6, 0.1f64..9.0, -0.5f64..0.5, -0.5f64..0.5),
+            slow in (2usize..6, 0.1f64..9.0, -0.5f64..0.5, -0.5f64..0.5),
+        ) {
+            let before = track(points);
+            let normal = DVec2::from_angle(push.2);
+            let (excess, haste) = (DVec2::new(even.2, even.3), DVec2::new(slow.2, slow.3));
+            let step = |t: &Track, k: usize| t.points[k + 1] - t.points[k];
+            let sum = |t: &Track| {
+                let held: f64 = t.free.clone().map(|k| (t.points[k] - before.points[k]).length_squared()).sum();
+                let bends: f64 = t.moving_knots().map(|k| t.bend(k).length_squared()).sum();
+                0.1 * held + bends
+                    + push.1 * (push.3 - normal.dot(t.knots[push.0] - before.knots[push.0])).powi(2)
+                    + even.1 * (t.bend(even.0) - before.bend(even.0) + excess).length_squared()
+                    + slow.1 * (step(t, slow.0) - step(&before, slow.0) + haste).length_squared()
+            };
+            let mut system = System::default();
+            system.begin(&before, 0.1);
+            system.push(push.0, push.1, normal, push.3);
+            system.even(even.0, even.1, excess);
+            system.slow(slow.0, slow.1, haste);
+            let mut solved = before.clone();
+            system.apply(&mut solved, f64::INFINITY);
+            for k in solved.free.clone() {
+                for axis in [DVec2::X, DVec2::Y] {
+                    let moved = |by: f64| {
+                        let mut other = solved.clone();
+                        other.points[k] += axis * by;
+                        other.update_knots();
+                        sum(&other)
+                    };
+                    prop_assert!((moved(1e-4) - moved(-1e-4)).abs() < 1e-9 * (1.0 + sum(&solved)));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn nailed_points_stay() {
+        let before = track((0..10).map(|i| (f64::from(i), f64::from(i * i % 3))).collect());
+        let (mut system, mut solved) = (System::default(), before.clone());
+        system.begin(&before, 0.1);
+        system.nail(4);
+        system.apply(&mut solved, f64::INFINITY);
+        assert!(solved.points[4].distance(before.points[4]) < 1e-8);
+        assert!(solved.points[5].distance(before.points[5]) > 1e-3);
+    }
+}

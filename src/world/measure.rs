@@ -1,0 +1,58 @@
+//! How long patches take: what the benchmark prints.
+
+use std::time::Instant;
+
+use super::{CrowdPatch, FramePatch, Limits, Method, Options, solve};
+use crate::Result;
+
+/// Figures of patches of one size.
+#[derive(Clone, Debug)]
+pub struct Creation {
+    /// Inputs (and outputs) of every patch.
+    pub walkers: usize,
+    /// Milliseconds per patch, ascending: the least of three runs, as other processes take the core now and then.
+    pub millis: Vec<f64>,
+    /// Patches whose walkers keep all limits.
+    pub solved: usize,
+    /// Curves computed, of all patches.
+    pub solves: u64,
+    /// Connections drawn anew, of all patches.
+    pub restarts: u64,
+    /// The patches.
+    pub patches: Vec<CrowdPatch>,
+}
+
+impl Creation {
+    /// Milliseconds that a `share` of the patches stays below.
+    pub fn quantile(&self, share: f64) -> f64 {
+        let last = self.millis.len().saturating_sub(1);
+        self.millis.get((last as f64 * share.clamp(0.0, 1.0)) as usize).copied().unwrap_or(f64::NAN)
+    }
+}
+
+/// Solves `patches` random test patches ([`FramePatch::sample`]) of `walkers` inputs and outputs on one core.
+///
+/// # Errors
+/// If there is no room for so many walkers.
+pub fn measure_creation(method: Method, walkers: usize, patches: u64) -> Result<Creation> {
+    let mut found = Creation { walkers, millis: Vec::new(), solved: 0, solves: 0, restarts: 0, patches: Vec::new() };
+    for seed in 0..patches {
+        let frame = FramePatch::sample(walkers, seed)?;
+        let options = Options { seed, method, ..Options::default() };
+        let mut least = f64::INFINITY;
+        for run in 0..3 {
+            let begin = Instant::now();
+            let solution = solve(&frame, &Limits::default(), &options)?;
+            least = least.min(begin.elapsed().as_secs_f64() * 1e3);
+            if run == 0 {
+                found.solved += usize::from(solution.ok());
+                found.solves += solution.solves;
+                found.restarts += u64::from(solution.restarts);
+                found.patches.push(solution.patch);
+            }
+        }
+        found.millis.push(least);
+    }
+    found.millis.sort_by(f64::total_cmp);
+    Ok(found)
+}
