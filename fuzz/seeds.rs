@@ -48,6 +48,9 @@ fn main() -> std::io::Result<()> {
     write("compose", "meet.toml", include_bytes!("../examples/compose/meet-and-bow.compose.toml"))?;
     write("compose", "rows.toml", include_bytes!("../examples/compose/rows-bow.compose.toml"))?;
     write("compose", "push.toml", include_bytes!("../examples/compose/push-and-stumble.compose.toml"))?;
+    write("compose", "carry.toml", include_bytes!("../examples/compose/carry-and-pass.compose.toml"))?;
+    write("compose", "rest.toml", include_bytes!("../examples/compose/put-and-take.compose.toml"))?;
+    write("compose", "sit.toml", include_bytes!("../examples/compose/sit-on-box.compose.toml"))?;
     write("rig", "small.toml", b"hips = \"Root_M\"\nleft_up_leg = \"Hip_L\"\n")?;
     write("avatar", "small.glb", &avatar::character(&glb))?;
     for take in samples::generate(1).iter().take(3) {

@@ -67,14 +67,14 @@ fn a_set_of_raw_captures_tiles_perfectly() {
     let Some(made) = captured() else { return };
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/cmu/plaza.toml");
     let scene = Scene::load(&scene).unwrap();
-    // Seed 2 is perfect as well, but misses two rows of the check by little: open.
-    let seed = 1;
-    let outcome = tile(&scene, &made.set, &Options { seed, ..Options::default() }, &mut |_| true).unwrap();
-    let (people, report) = (outcome.crowd.characters.len(), check(&outcome.crowd));
-    println!("seed {seed}: {:?}, {people} people in {:.2} s", outcome.status, outcome.solve_secs);
-    assert!(!matches!(outcome.status, Status::Imperfect(_)), "seed {seed}: {:?}", outcome.status);
-    let failed: Vec<_> = report.rows.iter().filter(|r| !r.ok).collect();
-    assert!(failed.is_empty() && people >= 48, "seed {seed}: {people} people, {failed:?}");
+    for seed in [1, 2, 3] {
+        let outcome = tile(&scene, &made.set, &Options { seed, ..Options::default() }, &mut |_| true).unwrap();
+        let (people, report) = (outcome.crowd.characters.len(), check(&outcome.crowd));
+        println!("seed {seed}: {:?}, {people} people in {:.2} s", outcome.status, outcome.solve_secs);
+        assert_eq!(outcome.status, Status::Perfect, "seed {seed}");
+        let failed: Vec<_> = report.rows.iter().filter(|r| !r.ok).collect();
+        assert!(failed.is_empty() && people >= 54, "seed {seed}: {people} people, {failed:?}");
+    }
 }
 
 /// The samples with everything taken from their take files that says where to cut.
@@ -99,7 +99,8 @@ fn samples_without_annotation_annotate_themselves_the_same_each_time() {
     let (alone, together): (Vec<_>, Vec<_>) = own(&made.set).partition(|k| k.people() == 1);
     println!("{} kinds of one person, {} of several, {:?}", alone.len(), together.len(), made.set.groups);
     assert!(alone.len() >= 27 && together.len() >= 16);
-    let walks = ["walk_left", "walk_right", "stand"];
+    // Somebody takes the box up and puts it down, so that those who hand it over can come and go.
+    let walks = ["walk_left", "walk_right", "stand", "carry_stand"];
     assert!(walks.iter().all(|w| made.set.groups.iter().any(|g| g.name == *w)), "{:?}", made.set.groups);
     // Every take of several people whose people do something together has a patch of it, or a reason why not.
     for (i, t) in made.takes.iter().enumerate().filter(|(_, t)| t.take.people.len() > 1) {

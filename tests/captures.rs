@@ -279,7 +279,7 @@ fn captures_rarely_exceed_the_limits_of_joints() {
     let (middle, most) = (percentile(shares.clone(), 50), percentile(shares, 100));
     println!("limits: median {:.3} % of joint frames beyond, most {:.2} %", 100.0 * middle, 100.0 * most);
     // The most is 141_16, whose knees were captured bent sideways by up to 32 degrees.
-    assert!(middle < 0.005 && most < 0.07, "{middle} {most}");
+    assert!(middle < 0.005 && most < 0.06, "{middle} {most}");
 }
 
 #[test]

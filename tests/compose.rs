@@ -356,7 +356,7 @@ fn compose_files_beside_others_join_the_set() {
     let mut set = sample_set();
     let before = set.clone();
     add(&mut set, std::slice::from_ref(&folder), &SOURCES, &CutOptions::default()).unwrap();
-    assert_eq!(set.kinds.len(), before.kinds.len() + 6, "three, and their mirror images");
+    assert_eq!(set.kinds.len(), before.kinds.len() + 12, "six, and their mirror images");
     assert_eq!(set.kinds[..before.kinds.len()], before.kinds);
     let kind = |name: &str| set.kinds.iter().find(|k| k.name == name).unwrap();
     let image = mirrored(kind("push-and-stumble"), &mut set.groups.clone());
@@ -364,7 +364,7 @@ fn compose_files_beside_others_join_the_set() {
     let again = PatchSet::from_bytes(&set.to_bytes()).unwrap();
     assert_eq!(again, set, "a composed kind comes back from a file as it is");
     let twice = add(&mut set, &[folder], &SOURCES, &CutOptions::default()).unwrap_err().to_string();
-    assert!(twice.contains("meet-and-bow") && twice.contains("a new name"), "{twice}");
+    assert!(twice.contains("carry-and-pass") && twice.contains("a new name"), "{twice}");
     let missing = add(&mut set, &["nowhere.compose.toml".into()], &SOURCES, &CutOptions::default()).unwrap_err();
     assert!(missing.to_string().contains("nowhere.compose.toml"), "{missing}");
 }

@@ -49,6 +49,7 @@ fn taken_up_and_put_down() -> PatchProp {
         size: [0.3, 0.25, 0.2],
         grip: [0.05, 0.1],
         holds: vec![PropHold { role: 0, begin: 2, end: 4 }],
+        sat: vec![],
         before: Some(rest(0.5)),
         after: Some(rest(1.5)),
     }
@@ -60,6 +61,7 @@ fn passed() -> PatchProp {
         size: [0.4, 0.3, 0.3],
         grip: [-0.02, 0.08],
         holds: vec![PropHold { role: 1, begin: 0, end: 7 }, PropHold { role: 0, begin: 5, end: 10 }],
+        sat: vec![],
         before: None,
         after: None,
     }
@@ -101,7 +103,8 @@ fn positions(set: &PatchSet) -> Value {
             }
         }
     }
-    json!({ "bodies": all, "boxes": boxes(set) })
+    let measures: Vec<_> = set.kinds.iter().map(PatchKind::measures).collect();
+    json!({ "bodies": all, "boxes": boxes(set), "measures": measures })
 }
 
 /// Where the boxes are at every frame at which they are there.
@@ -143,7 +146,16 @@ fn the_studios_golden_set_is_what_rust_writes() {
         let joints = places.flat_map(|p| p["joints"].as_array().unwrap());
         joints.flat_map(|j| j.as_array().unwrap()).map(|n| n.as_f64().unwrap()).collect()
     };
+    let words = |v: &Value| v["measures"].as_array().unwrap().iter().map(|m| m["words"].clone()).collect::<Vec<_>>();
+    let figures = |v: &Value| -> Vec<f64> {
+        let kinds = v["measures"].as_array().unwrap().iter();
+        kinds
+            .flat_map(|m| ["seconds", "speed", "fastest", "radius", "turn_deg"].map(|f| m[f].as_f64().unwrap()))
+            .collect()
+    };
     for places in [positions(&filed), positions(&set)] {
+        assert_eq!(words(&places), words(&told));
+        assert!(figures(&places).iter().zip(figures(&told)).all(|(a, b)| (a - b).abs() < 0.01));
         let (a, b) = (numbers(&places), numbers(&told));
         assert_eq!(a.len(), b.len());
         // Another machine's sines may differ in their last bits.

@@ -133,7 +133,7 @@ fn a_box_is_taken_up_carried_passed_and_put_down() {
     assert!(speeds.fold(0.0, f32::max) < 2.0);
     let report = check(crowd);
     assert!(report.ok(), "{report}");
-    assert_eq!(report.rows.iter().filter(|r| r.row.contains("box")).count(), 7, "{report}");
+    assert_eq!(report.rows.iter().filter(|r| r.row.contains("box")).count(), 8, "{report}");
     assert_eq!(summary(crowd).props, 1);
 }
 

@@ -11,6 +11,7 @@ from crowdquilt._core import (
     Kind,
     Link,
     Made,
+    Measures,
     PatchSet,
     Role,
     Steering,
@@ -19,6 +20,7 @@ from crowdquilt._core import (
 )
 from crowdquilt._core import kind_boxes as boxes
 from crowdquilt._core import kind_capsules as capsules
+from crowdquilt._core import kind_measures as measures
 from crowdquilt._core import kind_positions as positions
 from crowdquilt._core import make_patches as make
 
@@ -29,6 +31,7 @@ __all__ = [
     "Kind",
     "Link",
     "Made",
+    "Measures",
     "PatchSet",
     "Role",
     "Steering",
@@ -38,6 +41,7 @@ __all__ = [
     "connectivity",
     "cut",
     "make",
+    "measures",
     "positions",
 ]
 

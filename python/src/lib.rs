@@ -9,12 +9,14 @@ mod check;
 mod connectivity;
 mod error;
 mod export;
+mod measures;
 mod motion;
 mod numbers;
 mod patch;
 mod progress;
 mod refine;
 mod samples;
+mod signals;
 mod stage;
 mod tiling;
 
@@ -31,6 +33,8 @@ mod _core {
     #[pymodule_export]
     use super::export::{export_bvh, export_glb};
     #[pymodule_export]
+    use super::measures::{Measures, kind_measures};
+    #[pymodule_export]
     use super::motion::{Clip, check_take, import_presets, load_clip, take_distances};
     #[pymodule_export]
     use super::patch::{Kind, Made, PatchSet, Role, Take, make_patches};
@@ -38,6 +42,8 @@ mod _core {
     use super::refine::refine_crowd;
     #[pymodule_export]
     use super::samples::write_samples;
+    #[pymodule_export]
+    use super::signals::{PairSignals, TakeSignals};
     #[pymodule_export]
     use super::stage::{Crowd, Fragment, Prop};
     #[pymodule_export]

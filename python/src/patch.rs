@@ -1,13 +1,14 @@
 //! Glue of `crowdquilt::patch`.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use crowdquilt::motion::FPS;
 use crowdquilt::motion::collection::Collected;
 use crowdquilt::patch as core;
-use crowdquilt::patch::episode::{Event, EventKind};
+use crowdquilt::patch::episode::{Detection, Event};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -15,6 +16,7 @@ use pyo3::prelude::*;
 use crate::error::{run, to_python};
 use crate::numbers::points2;
 use crate::progress::watched;
+use crate::signals::{TakeSignals, kind_name};
 
 /// Make a patch set of captures: a folder, an index (`.csv`), a take file (`.take.json`) or one capture.
 ///
@@ -97,6 +99,29 @@ impl Made {
         (0..self.0.takes.len()).map(|i| Py::new(py, self.take(i))).collect()
     }
 
+    /// What events were told by, of every take in which they were looked for.
+    fn signals(&self, py: Python<'_>) -> PyResult<Vec<Py<TakeSignals>>> {
+        let found = self.0.annotation.as_ref().map_or(&[][..], |a| &a.found);
+        let take = |(&take, found): (&usize, &Detection)| {
+            Py::new(py, TakeSignals::of(py, self.0.takes[take].take.name.clone(), found)?)
+        };
+        self.0.found_in.iter().zip(found).map(take).collect()
+    }
+
+    /// What counted as an event: `touch_gap` and `near` in metres; the variations (eq. 4, m²) above which somebody acts
+    /// who stays `in_place`, and who is `travelling`. Empty if no take was looked at.
+    #[getter]
+    fn thresholds(&self) -> BTreeMap<&'static str, f32> {
+        let Some(found) = self.0.annotation.as_ref().and_then(|a| a.found.first()) else { return BTreeMap::new() };
+        let of = &found.thresholds;
+        BTreeMap::from([
+            ("touch_gap", of.touch_gap),
+            ("near", of.near),
+            ("in_place", of.in_place),
+            ("travelling", of.travelling),
+        ])
+    }
+
     /// The take files that say what was cut, as (name, JSON text): to be edited, and cut again. Takes of which nothing
     /// was cut are left out.
     fn take_files(&self) -> Vec<(String, String)> {
@@ -110,14 +135,7 @@ impl Made {
         let take = &self.0.takes[index].take;
         let found = self.0.found_in.iter().position(|&i| i == index);
         let events = found.zip(self.0.annotation.as_ref()).map_or(&[][..], |(k, a)| &a.found[k].events);
-        let event = |e: &Event| {
-            let kind = match e.kind {
-                EventKind::Contact => "contact",
-                EventKind::Proximity => "proximity",
-                EventKind::Synchronicity => "synchronicity",
-            };
-            (kind, e.people.clone(), e.begin as f32 / FPS, e.end as f32 / FPS)
-        };
+        let event = |e: &Event| (kind_name(e.kind), e.people.clone(), e.begin as f32 / FPS, e.end as f32 / FPS);
         Take {
             name: take.name.clone(),
             people: take.people.len(),

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import re
 import subprocess
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from conftest import ROOT, crowdquilt
@@ -69,6 +72,41 @@ def test_the_python_of_the_readme_is_the_api() -> None:
         thing: object = cq
         for part in name.strip(".").split("."):
             thing = getattr(thing, part)
+
+
+def test_the_documented_reader_of_patch_sets_runs_and_is_right(
+    patches: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import crowdquilt as cq
+
+    monkeypatch.chdir(tmp_path)
+    Path("people.patches").write_bytes(patches.read_bytes())
+    code = "\n".join(
+        re.findall(r"```python\n(.*?)```", (ROOT / "docs/formats/patches.md").read_text(), flags=re.DOTALL)
+    )
+    read: dict[str, Any] = {}
+    exec(compile(code, "patches.md", "exec"), read)
+    made = cq.PatchSet.load(patches)
+    assert [k["name"] for k in read["header"]["kinds"]] == [k.name for k in made.kinds]
+    kinds = [0, len(made) // 2, next(i for i, k in enumerate(made.kinds) if k.people == 3)]
+    for kind in kinds:
+        for role in range(made.kinds[kind].people):
+            assert np.allclose(read["positions"](kind, role), cq.patch.positions(made, kind, role), atol=1e-4)
+
+
+def test_the_documented_fields_of_patch_sets_are_those_of_the_file(patches: Path) -> None:
+    """Every field of the header is named in the document."""
+    data = patches.read_bytes()
+    header = json.loads(data[24 : 24 + int.from_bytes(data[12:16], "little")])
+    kinds = header["kinds"]
+    prop = next(p for k in kinds for p in k["props"])
+    contact = next(c for k in kinds for c in k["contacts"])
+    fragment = next(f for k in kinds for f in k["fragments"] if f["plants"])
+    stored = [header, kinds[0], fragment, fragment["plants"][0], contact, contact["a"], prop, prop["holds"][0]]
+    names = {name for part in stored for name in part} | set(header["arrays"]) | {"name", "parent", "offset", "tip"}
+    told = set(re.findall(r"`([\w.]+)`", (ROOT / "docs/formats/patches.md").read_text()))
+    told |= {word for name in told for word in name.split(".")}
+    assert names <= told
 
 
 def test_the_example_scene_is_valid() -> None:

@@ -134,6 +134,35 @@ def test_kinds_tells_and_draws(patches: Path, samples: cq.PatchSet, tmp_path: Pa
     assert [k["name"] for k in told["kinds"]] == [k.name for k in samples.kinds]
 
 
+def test_kinds_are_measured(patches: Path, samples: cq.PatchSet) -> None:
+    found = dict(zip((k.name for k in samples.kinds), cq.patch.measures(samples), strict=True))
+    for index, kind in enumerate(samples.kinds):
+        own = found[kind.name]
+        assert (own.people, own.seconds) == (kind.people, pytest.approx(kind.seconds))
+        assert ("contact" in own.words) == (kind.contacts > 0) and ("together" in own.words) == (kind.people > 1)
+        # Everybody's joints lie in the circle, so it is at least half as wide as the farthest two are apart.
+        joints = np.concatenate([cq.patch.positions(samples, index, r).reshape(-1, 3) for r in range(kind.people)])
+        assert own.radius >= np.ptp(joints[:, [0, 2]], axis=0).max() / 2
+        ways = [np.linalg.norm(np.diff(samples.path(index, r)[0], axis=0), axis=1).sum() for r in range(kind.people)]
+        assert own.speed == pytest.approx(sum(ways) / sum((r.frames - 1) / 30 for r in kind.roles), rel=1e-3, abs=1e-4)
+        assert own.fastest >= own.speed - 1e-3
+    assert found["pivot-90"].turn_deg == pytest.approx(-found["pivot-90-mirror"].turn_deg, abs=1e-3)
+    assert found["handshake-stand"].words == ["stand", "together", "contact"]
+    assert found["sit"].words[-1] == "low" and found["carry-walk-cycle"].props == 1
+
+
+def test_measures_are_told(patches: Path, samples: cq.PatchSet) -> None:
+    told = json.loads(crowdquilt("kinds", patches, "--json").stdout)["kinds"]
+    for kind, own in zip(told, cq.patch.measures(samples), strict=True):
+        assert kind["measures"]["words"] == own.words and kind["measures"]["radius"] == pytest.approx(
+            own.radius, abs=1e-3
+        )
+    text = crowdquilt("kinds", patches, "--each").stdout
+    line = next(line for line in text.splitlines() if line.startswith("handshake-stand "))
+    assert "stand together contact" in line and "stand → stand" in line
+    assert "handshake-stand-mirror" not in text
+
+
 def test_a_picture_of_no_known_format_is_refused(patches: Path, tmp_path: Path) -> None:
     done = crowdquilt("kinds", patches, "--sheet", tmp_path / "sheet.xyz")
     assert done.returncode == 2 and "expected a picture" in done.stderr

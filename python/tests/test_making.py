@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import crowdquilt as cq
-from conftest import crowdquilt
+from conftest import ROOT, crowdquilt
+from crowdquilt import plot
 
 FACTS = ("kinds", "single_person_kinds", "multi_person_kinds", "pose_groups", "closed", "takes")
 
@@ -70,6 +71,106 @@ def test_who_never_meets_gives_patches_of_one_person_and_a_reason(bare: Path, tm
     assert code == 0, said
     assert facts["multi_person_kinds"] == 0 < facts["single_person_kinds"]
     assert "they never meet" in facts["takes"][0]["notes"][0]
+
+
+def test_who_stands_about_beside_another_is_no_event_and_the_reason_is_told(bare: Path, tmp_path: Path) -> None:
+    # Both idle, back to back.
+    people = [{"file": "idle-a.bvh"}, {"file": "idle-a.bvh", "offset": {"z": -1.1, "heading_deg": 180.0}}]
+    _, code, said = make(write_take(bare, "idlers", people), tmp_path / "x.patches")
+    (bare / "idlers.take.json").unlink()
+    assert code == 2 and not (tmp_path / "x.patches").exists()
+    assert "idlers: no event: people 0 and 1: nearest 1.10 m apart at frame" in said
+    assert "nobody touches, and nobody reacts noticeably while near" in said
+
+
+def test_what_is_too_short_for_anything_is_refused_with_its_reasons(bare: Path, tmp_path: Path) -> None:
+    head, motion = (bare / "walk-normal-a.bvh").read_text().split("MOTION")
+    lines = motion.strip().splitlines()
+    (tmp_path / "two.bvh").write_text("\n".join([head + "MOTION", "Frames: 4", *lines[1:6], ""]))
+    people = [{"file": "two.bvh"}, {"file": "two.bvh", "offset": {"x": 3.0}}]
+    source = write_take(tmp_path, "glimpse", people)
+    _, code, said = make(source, tmp_path / "x.patches")
+    assert code == 2 and len(said.strip().splitlines()) == 1
+    assert "nothing to make patches of: glimpse: no event: people 0 and 1: nearest 3.00 m apart" in said
+    assert "expected two moments in a recurring pose" in said
+    assert not (tmp_path / "x.patches").exists()
+
+
+def test_a_prop_in_the_hands_of_somebody_who_is_not_there_is_refused(bare: Path, tmp_path: Path) -> None:
+    props = [{"name": "crate", "size": [0.4, 0.3, 0.3], "held": [{"person": 3, "begin": 0.0, "end": 1.0}]}]
+    path = write_take(bare, "no-hands", [{"file": "walk-normal-a.bvh"}], props)
+    _, code, said = make(path, tmp_path / "x.patches")
+    path.unlink()
+    assert (
+        code == 2
+        and "no-hands.take.json: props[0].held[0]: expected a person below 1, found 3" in said
+        and "Traceback" not in said
+    )
+
+
+def test_labels_by_hand_survive(bare: Path, tmp_path: Path) -> None:
+    """The free words of a take file are those of the kind, of its mirrored copy, and of the file."""
+    found, out = tmp_path / "found", tmp_path / "x.patches"
+    done = crowdquilt("patches", bare, "-o", out, "--takes", found, "-q")
+    assert done.returncode == 0, done.stderr
+    path = found / "push-walk.take.json"
+    take = json.loads(path.read_text())
+    own = next(p for p in take["patches"] if len(p["roles"]) == 2)
+    own["labels"] = ["hostile", "Größe 12", "push"]
+    path.write_text(json.dumps(take))
+    done = crowdquilt("patches", found, "--captures", bare, "-o", out, "-q")
+    assert done.returncode == 0, done.stderr
+    kinds = {k.name: k for k in cq.PatchSet.load(out).kinds}
+    assert kinds[own["name"]].labels == own["labels"] == kinds[own["name"] + "-mirror"].labels
+    told = json.loads(crowdquilt("kinds", out, "--json").stdout)["kinds"]
+    assert next(k for k in told if k["name"] == own["name"])["labels"] == own["labels"]
+
+
+def test_labels_of_composed_patches_survive(captures: Path, tmp_path: Path) -> None:
+    text = (ROOT / "examples/compose/push-and-stumble.compose.toml").read_text()
+    file = tmp_path / "own.compose.toml"
+    file.write_text(text.replace('["hostile"]', '["hostile", "two words"]'))
+    made = cq.patch.make(captures, compose=[file]).set
+    labels = {k.name: k.labels for k in made.kinds}
+    assert labels["push-and-stumble"] == labels["push-and-stumble-mirror"] == ["hostile", "two words"]
+
+
+def test_events_are_explained_by_a_picture(bare: Path, tmp_path: Path) -> None:
+    picture = tmp_path / "events.png"
+    done = crowdquilt("patches", bare, "-o", tmp_path / "x.patches", "--plot", picture, "-q")
+    assert done.returncode == 0, done.stderr
+    assert picture.stat().st_size > 50_000
+    done = crowdquilt("patches", bare, "-o", tmp_path / "y.patches", "--plot", tmp_path / "events.doc", "-q")
+    assert done.returncode == 2 and "expected a picture" in done.stderr and not (tmp_path / "y.patches").exists()
+
+
+def test_signals_are_those_that_thresholds_are_held_against(bare: Path) -> None:
+    made = cq.patch.make(bare)
+    limits = made.thresholds
+    assert limits["near"] == pytest.approx(1.2) and 0 < limits["in_place"] < limits["travelling"]
+    shared = [take for take in made.signals() if take.pairs]
+    assert len(shared) == sum(take.people > 1 for take in made.takes)
+    for take in shared:
+        pairs = {tuple(p.people): p for p in take.pairs}
+        for kind, people, begin, end in take.signs:
+            own = pairs[people]
+            span = slice(begin, end + 1)
+            if kind == "contact":
+                assert own.gap[span].min() < limits["touch_gap"]
+            elif kind == "proximity":
+                assert own.apart[span].max() < limits["near"] and own.reaction[span].min() >= 1
+            else:
+                assert own.synchronicity[span].min() >= 1
+
+
+def test_nothing_to_explain_is_a_picture_too(captures: Path, tmp_path: Path) -> None:
+    """All takes are annotated: no events were looked for."""
+    made = cq.patch.make(captures)
+    assert made.signals() == [] and made.thresholds == {}
+    figure = plot.events(made, tmp_path / "events.svg")
+    assert (tmp_path / "events.svg").stat().st_size > 3000
+    told = [text.get_text() for axes in figure.axes for text in axes.texts]
+    assert "no take of two people" in told
 
 
 def test_a_capture_alone_gives_patches_of_one_person(bare: Path, tmp_path: Path) -> None:

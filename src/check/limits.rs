@@ -44,7 +44,7 @@ pub struct Limits {
     pub plant_slide_median: f64,
     /// How far a foot's joints may be below the floor, metres. Default 0.02.
     pub sinking: f64,
-    /// How much further beyond its limits a joint may be turned than in the captures shown, degrees. Default 10.
+    /// How much further beyond its limits a joint may be turned than in the captures shown, degrees. Default 5.
     pub joint_excess_deg: f64,
 }
 
@@ -70,7 +70,7 @@ impl Default for Limits {
             plant_slide: 0.01,
             plant_slide_median: 0.003,
             sinking: 0.02,
-            joint_excess_deg: 10.0,
+            joint_excess_deg: 5.0,
         }
     }
 }

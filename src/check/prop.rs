@@ -19,6 +19,10 @@ use crate::stage::{Crowd, Prop};
 const STILL: f32 = 0.001;
 /// Holds may begin and end this many frames from where the capture has them.
 const ROUNDING: f64 = 1.01;
+/// A box this near to where the capture has it is the same, metres.
+const ASTRAY: f32 = 0.02;
+/// Where there is no box at all, a sitter is so far from one, metres.
+const NO_SEAT: f32 = 10.0;
 /// Boxes may differ from the captured ones by this much, metres.
 const SAME_SIZE: f32 = 0.006;
 
@@ -37,6 +41,7 @@ pub(super) fn rows(crowd: &Crowd, parts: &[Part], limits: &Limits) -> Vec<Row> {
         all.body.row(4, "box inside a body, more than captured", limits.penetration, "m"),
         overlaps(crowd).row(4, "boxes overlap", limits.penetration, "m"),
         all.palm.row(5, "palm off the box it holds", limits.contact_distance, "m"),
+        seats(crowd, parts).row(5, "sitter off the top of the box", limits.contact_distance, "m"),
         keeping.row(7, "boxes held by nobody, by strangers or by too many"),
         all.wall.row(7, "boxes outside the region or in obstacles", limits.penetration, "m"),
         all.floor.row(7, "boxes below the floor", limits.penetration, "m"),
@@ -80,6 +85,35 @@ fn captured(parts: &[Part]) -> Vec<Captured> {
         }
     }
     all
+}
+
+/// How far people's hips are from the tops of the boxes that they sit on in the captures.
+fn seats(crowd: &Crowd, parts: &[Part]) -> Worst {
+    let mut worst = Worst::default();
+    let mut globals = Vec::new();
+    for part in parts {
+        let character = &crowd.characters[part.character];
+        let seats = part.kind.props.iter().flat_map(|p| &p.sat).filter(|s| s.role == part.used.role);
+        for seat in seats {
+            let (begin, end) = (part.frame_at_clock(seat.begin as f64), part.frame_at_clock(seat.end as f64));
+            let frames = part.visible(crowd.domain.last_frame);
+            for frame in frames.filter(|&f| begin <= f as f64 && f as f64 <= end && character.present(f)) {
+                character.globals((frame - character.begin) as usize, &mut globals);
+                let body = Body::new(&globals);
+                let off = blocks(crowd, frame).map(|(_, block)| block.seat_off(&body)).fold(NO_SEAT, f32::min);
+                worst.offer(off as f64, || format!("{}, frame {frame}", part.name()));
+            }
+        }
+    }
+    worst
+}
+
+/// All boxes at a frame.
+fn blocks(crowd: &Crowd, frame: u32) -> impl Iterator<Item = (usize, Block)> + '_ {
+    crowd.props.iter().enumerate().filter_map(move |(i, p)| {
+        let at = p.places.get(frame.checked_sub(p.begin)? as usize)?;
+        Some((i, Block::new(*at, p.size)))
+    })
 }
 
 /// Faults of who holds what: the captures say who has a box in the hands, and nobody else has.
@@ -207,11 +241,19 @@ fn captured_depth(crowd: &Crowd, parts: &[Part], prop: &Prop, character: usize, 
         players.into_iter().any(|q| {
             let span = q.visible(crowd.domain.last_frame);
             prop.holds.iter().any(|h| h.character as usize == q.character && h.begin < span.end && span.start <= h.end)
-        })
+        }) || prop.holds.is_empty() && stands_by(p, prop)
     };
     let depths =
         mine.filter(|p| handles(p)).flat_map(|p| (0..p.kind.props.len()).map(move |k| depth_in_capture(p, k, frame)));
     depths.fold(0.0, f32::max)
+}
+
+/// True if a box that nobody holds is where the capture has people sit on one.
+fn stands_by(part: &Part, prop: &Prop) -> bool {
+    let clock = part.clock_range().0;
+    let world_from_patch = part.deformed_at(clock).then(part.captured_at(clock).inverse());
+    let rests = part.kind.props.iter().filter(|p| p.holds.is_empty()).filter_map(|p| p.before);
+    rests.into_iter().any(|at| at.carried(world_from_patch).middle.distance(prop.places[0].middle) <= ASTRAY)
 }
 
 /// Between two captured frames the deeper of them.
@@ -229,7 +271,7 @@ fn depth_in_capture(part: &Part, prop: usize, frame: u32) -> f32 {
                 Some(place_between(palms(&globals), prop.grip))
             }
             None if prop.holds.first().is_some_and(|h| clock < h.begin) => prop.before,
-            None => prop.after,
+            None => prop.place(part.kind, clock),
         };
         let Some(place) = place else { return 0.0 };
         part.source.motion.globals((clock - begin) as usize, &mut globals);
@@ -240,11 +282,7 @@ fn depth_in_capture(part: &Part, prop: usize, frame: u32) -> f32 {
 
 fn overlaps(crowd: &Crowd) -> Worst {
     let at_frame = |frame: u32| {
-        let here = crowd.props.iter().enumerate().filter_map(|(i, p)| {
-            let at = p.places.get(frame.checked_sub(p.begin)? as usize)?;
-            Some((i, Block::new(*at, p.size)))
-        });
-        let here: Vec<(usize, Block)> = here.collect();
+        let here: Vec<(usize, Block)> = blocks(crowd, frame).collect();
         let mut worst = Worst::default();
         for (k, (i, block)) in here.iter().enumerate() {
             for (j, other) in &here[..k] {

@@ -78,6 +78,14 @@ impl Block {
         off(l, side).max(off(r, -side))
     }
 
+    /// How far a body's pelvis, the lower end of its first capsule, is from where it would sit on the box. Metres.
+    pub(super) fn seat_off(&self, body: &Body) -> f32 {
+        let pelvis = &body.capsules[0];
+        let at = Quat::from_rotation_y(-self.at.heading) * (pelvis.a - self.at.middle);
+        let beyond = Vec2::new(at.x.abs() - self.half.x, at.z.abs() - self.half.z).max(Vec2::ZERO);
+        (at.y - pelvis.radius - self.half.y).hypot(beyond.length())
+    }
+
     /// How far the box reaches out of the region or into obstacles, metres.
     pub(super) fn depth_in_walls(&self, domain: &DomainInfo) -> f32 {
         let turn = Quat::from_rotation_y(self.at.heading);

@@ -169,7 +169,7 @@ pub struct TakePatch {
     pub core: Option<[f32; 2]>,
 }
 
-/// A box that people of the take hold in both hands, or that rests where it was put down or will be picked up.
+/// A box that people of the take hold in both hands or sit on, or that rests where it was put down or will be picked up.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TakeProp {
@@ -182,10 +182,22 @@ pub struct TakeProp {
     pub grip: [f32; 2],
     /// Who holds it from when to when, in order. Between two holds it rests, unless the second begins when the first
     /// ends or before: then it is passed, and over the time that they share both hold it.
+    #[serde(default)]
     pub held: Vec<TakeHold>,
+    /// Who sits on it from when to when, in order. Where nobody holds it, it stands on the ground under who sits on it
+    /// first, turned as the sitter looks.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sat: Vec<TakeHold>,
+    /// How far ahead of a sitter's hips its middle is; negative behind. Metres.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub seat: f32,
 }
 
-/// A time over which a person holds a prop between the palms.
+fn is_zero(value: &f32) -> bool {
+    *value == 0.0
+}
+
+/// A time over which a person holds a prop between the palms, or sits on it.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TakeHold {
@@ -242,6 +254,9 @@ impl TakeProp {
         }
         if !self.grip.iter().all(|g| g.abs() <= LARGEST_BOX) {
             problems.push((".grip".into(), format!("expected up to {LARGEST_BOX} m, found {:?}", self.grip)));
+        }
+        if self.seat.is_nan() || self.seat.abs() > LARGEST_BOX {
+            problems.push((".seat".into(), format!("expected up to {LARGEST_BOX} m, found {}", self.seat)));
         }
         for (k, pair) in self.held.windows(2).enumerate() {
             if !(pair[0].begin < pair[1].begin && pair[0].end < pair[1].end) {
@@ -319,6 +334,9 @@ impl TakeFile {
             prop.problems().into_iter().for_each(|(place, problem)| bad(format!("props[{i}]{place}"), problem));
             for (k, hold) in prop.held.iter().enumerate() {
                 span(format!("props[{i}].held[{k}]"), hold.person, hold.begin, hold.end);
+            }
+            for (k, seat) in prop.sat.iter().enumerate() {
+                span(format!("props[{i}].sat[{k}]"), seat.person, seat.begin, seat.end);
             }
         }
         for patch in &self.patches {

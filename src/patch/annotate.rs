@@ -8,6 +8,7 @@ mod alone;
 mod labels;
 
 use super::boundaries::{Boundaries, BoundaryOptions, Bounded, Cut, boundaries};
+use super::cut;
 use super::episode::{Detection, EpisodeOptions, detect_all};
 use crate::motion::gait::Phase;
 use crate::motion::take::{TakeFile, TakePatch, TakePort, TakeRole};
@@ -45,7 +46,7 @@ pub fn annotate(takes: &mut [TakeFile], motions: &[Vec<Motion>], options: &Annot
     let boundaries = boundaries(&people, &found, &options.boundaries);
     let names = names(&boundaries);
     let annotation = Annotation { found, boundaries, names };
-    let alone = alone::pieces(motions, &annotation, &options.alone);
+    let alone = alone::pieces(takes, motions, &annotation, &options.alone);
     for (index, take) in takes.iter_mut().enumerate() {
         take.ports.clear();
         take.patches.clear();
@@ -118,14 +119,10 @@ impl Annotation {
         }
         used.sort_unstable();
         used.dedup();
-        let holds = |person: usize, time: f32| {
-            let mut held = take.props.iter().flat_map(|p| &p.held);
-            held.any(|h| h.person == person && h.begin <= time && time <= h.end)
-        };
         let port = |(person, cut): (usize, Cut)| {
             let (time, name) = (seconds(cut.frame), &self.names[cut.group]);
             // Poses do not tell what hands hold, and only who holds the same may go on.
-            let pose = if holds(person, time) { format!("carry_{name}") } else { name.clone() };
+            let pose = if holds(take, person, cut.frame) { format!("carry_{name}") } else { name.clone() };
             TakePort { person, time, pose }
         };
         take.ports = used.into_iter().map(port).collect();
@@ -154,6 +151,13 @@ fn names(boundaries: &Boundaries) -> Vec<String> {
         names[group.twin] = mirror::group(&names[g]);
     }
     names
+}
+
+/// Whether somebody has a prop in the hands at a frame.
+fn holds(take: &TakeFile, person: usize, frame: usize) -> bool {
+    // By frames, as props are cut: a hold to the end of a take holds at the last frame.
+    let mut held = take.props.iter().flat_map(|p| &p.held).filter(|h| h.person == person);
+    held.any(|h| (cut::frame(h.begin)..=cut::frame(h.end)).contains(&frame))
 }
 
 fn seconds(frame: usize) -> f32 {

@@ -49,6 +49,9 @@ pub struct Source {
 pub fn cut(sources: &[Source], options: &CutOptions) -> Result<PatchSet> {
     let mut set = PatchSet::default();
     for Source { origin, take, motions } in sources {
+        if let Some((prop, problem)) = take.props.iter().find_map(|p| Some((p, props::misfit(p, motions)?))) {
+            return Err(Error::invalid(origin.display().to_string(), format!("prop {}", prop.name), problem));
+        }
         for patch in &take.patches {
             let cutter = Cutter { take, motions, patch, options };
             let kind = cutter.kind(&mut set.groups).map_err(|e| e.in_file(origin))?;

@@ -3,8 +3,8 @@
 //! frame and joint (value / 32767).
 //!
 //! Versions: 1 had no `props`; 2 has them per kind: boxes with name, size, grip (where the middle is, seen from the
-//! middle between the palms: up, ahead), holds (role, begin, end: frames of the patch's clock) and where they rest
-//! before and after (middle, heading). Both are read, 2 is written.
+//! middle between the palms: up, ahead), holds (role, begin, end: frames of the patch's clock), sat (who sits on it,
+//! likewise; absent if nobody) and where they rest before and after (middle, heading). Both are read, 2 is written.
 
 use std::path::Path;
 

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::annotate::{AnnotateOptions, Annotation, annotate};
 use super::connectivity::connectivity;
 use super::cut::{CutOptions, Source, cut, load_take};
+use super::cut_props::misfit;
 use super::mirror::MIRRORED;
 use super::{Fragment, PatchKind, PatchSet, compose};
 use crate::motion::Motion;
@@ -41,6 +42,9 @@ pub struct Made {
     /// Patches that were found but left out, because they lead where nobody can go on, or nobody comes from: of which take
     /// (index into `takes`), and their names.
     pub left_out: Vec<(usize, String)>,
+    /// Props of those takes that are left out, because nobody's hands or hips are on them: of which take (index into
+    /// `takes`), and why.
+    pub left_out_props: Vec<(usize, String)>,
 }
 
 /// What is being done.
@@ -78,6 +82,14 @@ pub fn make_with(path: &Path, options: &MakeOptions, report: &(dyn Fn(Step) -> b
     let mut motions = takes.par_iter().map(load).collect::<Result<Vec<Vec<Motion>>>>()?;
     reach(Step::Find)?;
     let bare: Vec<usize> = (0..takes.len()).filter(|&i| takes[i].take.patches.is_empty()).collect();
+    let mut left_out_props = Vec::new();
+    for &i in &bare {
+        takes[i].take.props.retain(|prop| {
+            let problem = misfit(prop, &motions[i]);
+            left_out_props.extend(problem.iter().map(|p| (i, format!("prop {} is left out: {p}", prop.name))));
+            problem.is_none()
+        });
+    }
     let annotation = (!bare.is_empty()).then(|| {
         let mut files: Vec<_> = bare.iter().map(|&i| takes[i].take.clone()).collect();
         let people: Vec<Vec<Motion>> = bare.iter().map(|&i| std::mem::take(&mut motions[i])).collect();
@@ -108,7 +120,7 @@ pub fn make_with(path: &Path, options: &MakeOptions, report: &(dyn Fn(Step) -> b
             stays
         });
     }
-    Ok(Made { set, takes, annotation, found_in: bare, left_out })
+    Ok(Made { set, takes, annotation, found_in: bare, left_out, left_out_props })
 }
 
 /// Leaves kinds out that lead out of, or into, the part of the set in which people can go on for ever, as long as they
@@ -174,8 +186,9 @@ impl Made {
             let event = &annotation.found[k].events[lost.event];
             notes.push(format!("no patch of the event in frames {} to {}: {}", event.begin, event.end, lost.reason));
         }
-        let idle = self.takes[take].take.props.iter().filter(|p| p.held.is_empty());
+        let idle = self.takes[take].take.props.iter().filter(|p| p.held.is_empty() && p.sat.is_empty());
         notes.extend(idle.map(|p| format!("prop {}: expected somebody who holds it, found nobody", p.name)));
+        notes.extend(self.left_out_props.iter().filter(|p| p.0 == take).map(|p| p.1.clone()));
         let own = || self.left_out.iter().filter(|l| l.0 == take);
         notes.extend(own().map(|l| format!("{} is left out: nothing leads on from it, or up to it", l.1)));
         if self.takes[take].take.patches.is_empty() && own().count() == 0 {

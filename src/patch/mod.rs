@@ -2,7 +2,6 @@
 
 pub mod annotate;
 pub mod boundaries;
-pub mod boundary;
 pub mod compose;
 pub mod connectivity;
 mod cut;
@@ -12,9 +11,9 @@ mod cut_tests;
 pub mod episode;
 mod file;
 mod make;
+mod measure;
 mod mirror;
 mod prop;
-pub mod propose;
 mod set;
 mod speed;
 
@@ -23,6 +22,7 @@ pub(crate) use speed::{fastest_turns, turn_between};
 
 pub use cut::{CutOptions, Source, cut, load_take};
 pub use make::{Made, MakeOptions, Step, cut_folder, make, make_with};
+pub use measure::Measures;
 pub use mirror::mirrored;
 pub use prop::{PatchProp, PropHold};
 pub use set::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};

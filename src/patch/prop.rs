@@ -1,4 +1,4 @@
-//! Boxes that the people of a patch hold in both hands: who holds one when, and where it rests otherwise.
+//! Boxes that the people of a patch hold in both hands or sit on: who does when, and where a box rests otherwise.
 //!
 //! A box stays level; its place follows from the palms of who holds it. A fragment may enter or leave with a box in its
 //! hands: a port's state, which all ports of one pose group share, so that fragments stitch without a word about boxes.
@@ -24,15 +24,19 @@ pub struct PatchProp {
     pub size: [f32; 3],
     /// Where the box's middle is, seen from the middle between the palms: up, and ahead of the person. Metres.
     pub grip: [f32; 2],
-    /// Who holds it when, in order and without gaps; where two holds overlap the box is passed and both hold it.
+    /// Who holds it when, in order; nobody, if it is only sat on. Where two holds overlap the box is passed and both hold
+    /// it; between two that do not it rests where the first put it down.
     pub holds: Vec<PropHold>,
+    /// Who sits on it when, while it rests; in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sat: Vec<PropHold>,
     /// Where it rests, in the patch's frame, until the first takes it up; none if the first brings it along.
     pub before: Option<Upright>,
     /// Where it rests after the last put it down; none if the last takes it along.
     pub after: Option<Upright>,
 }
 
-/// A time over which a person of a patch holds a box between the palms.
+/// A time over which a person of a patch holds a box between the palms, or sits on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct PropHold {
     /// Index of the fragment.
@@ -53,13 +57,26 @@ impl PatchProp {
     /// or will have it in the hands at that time.
     pub fn place(&self, kind: &PatchKind, clock: u32) -> Option<Upright> {
         if let Some(hold) = self.holds.iter().find(|h| h.begin <= clock && clock <= h.end) {
-            let fragment = &kind.fragments[hold.role as usize];
-            let mut globals: Vec<(Vec3, Quat)> = Vec::new();
-            fragment.motion.globals((clock - fragment.begin) as usize, &mut globals);
-            return Some(self.between(palm(&globals, LEFT_HAND), palm(&globals, RIGHT_HAND)));
+            return Some(self.in_hands(kind, hold.role, clock));
         }
-        let early = self.holds.first().is_some_and(|h| clock < h.begin);
-        if early { self.before } else { self.after }
+        match self.holds.iter().rposition(|h| h.end < clock) {
+            None => self.before.or(self.after.filter(|_| self.holds.is_empty())),
+            Some(last) if last + 1 == self.holds.len() => self.after,
+            Some(k) => Some(settled(self.in_hands(kind, self.holds[k].role, self.holds[k].end), self.size[1])),
+        }
+    }
+
+    /// Where a role's palms have the box at a frame of the clock.
+    pub(super) fn in_hands(&self, kind: &PatchKind, role: u32, clock: u32) -> Upright {
+        let [left, right] = palms(kind, role, clock);
+        self.between(left, right)
+    }
+
+    /// The roles, and frames of the clock at which they show it, whose motion says where it rests before and after.
+    pub(crate) fn anchors(&self) -> [Option<(u32, u32)>; 2] {
+        let seat = self.sat.first().map(|s| (s.role, s.begin));
+        let (first, last) = (self.holds.first(), self.holds.last());
+        [first.map(|h| (h.role, h.begin)).or(seat), last.map(|h| (h.role, h.end)).or(seat)]
     }
 
     /// What is wrong with the prop itself.
@@ -77,15 +94,24 @@ impl PatchProp {
             let last = (fragment.motion.len() as u32).checked_sub(1)?.checked_add(fragment.begin)?;
             (fragment.begin <= h.begin && h.begin <= h.end && h.end <= last).then_some((fragment.begin, last))
         };
+        for (h, what) in self.uses().filter(|(h, _)| span(h).is_none()) {
+            bad(format!("role {} {what} it from frame {} to {}, outside its fragment", h.role, h.begin, h.end));
+        }
+        let held = |s: &&PropHold| self.holds.iter().any(|h| h.begin <= s.end && s.begin <= h.end);
+        for s in self.sat.iter().filter(held) {
+            bad(format!("role {} sits on it while it is in somebody's hands", s.role));
+        }
         let (Some(first), Some(last)) = (self.holds.first(), self.holds.last()) else {
-            bad("expected somebody to hold it, found nobody".into());
+            if self.sat.is_empty() {
+                bad("expected somebody to hold it or to sit on it, found nobody".into());
+            } else if self.before.is_none() || self.before != self.after {
+                bad("nobody moves it: expected it to rest in one place".into());
+            }
             return problems;
         };
-        for h in self.holds.iter().filter(|h| span(h).is_none()) {
-            bad(format!("role {} holds it from frame {} to {}, outside its fragment", h.role, h.begin, h.end));
-        }
-        let ordered = |a: &PropHold, b: &PropHold| a.begin < b.begin && b.begin <= a.end && a.end < b.end;
-        for w in self.holds.windows(2).filter(|w| w[0].role == w[1].role || !ordered(&w[0], &w[1])) {
+        let ordered = |a: &PropHold, b: &PropHold| a.begin < b.begin && a.end < b.end;
+        let passed_on = |a: &PropHold, b: &PropHold| a.role != b.role || a.end < b.begin;
+        for w in self.holds.windows(2).filter(|w| !passed_on(&w[0], &w[1]) || !ordered(&w[0], &w[1])) {
             bad(format!("role {} does not take it over from role {} in time", w[1].role, w[0].role));
         }
         if self.holds.windows(3).any(|w| w[2].begin <= w[0].end) {
@@ -101,12 +127,27 @@ impl PatchProp {
     }
 }
 
+impl PatchProp {
+    /// Who holds it or sits on it, and which of both in words.
+    fn uses(&self) -> impl Iterator<Item = (&PropHold, &'static str)> {
+        self.holds.iter().map(|h| (h, "holds")).chain(self.sat.iter().map(|s| (s, "sits on")))
+    }
+}
+
 /// The place of a box between two palms: level, its width from the right palm to the left one.
 pub(crate) fn at_palms(left: Vec3, right: Vec3, [up, ahead]: [f32; 2]) -> Upright {
     let across = left - right;
     let heading = (-across.z).atan2(across.x);
     let forward = Vec3::new(heading.sin(), 0.0, heading.cos());
     Upright { middle: (left + right) * 0.5 + Vec3::Y * up + forward * ahead, heading }
+}
+
+/// The middles of a role's palms, left and right, at a frame of the clock.
+pub(super) fn palms(kind: &PatchKind, role: u32, clock: u32) -> [Vec3; 2] {
+    let fragment = &kind.fragments[role as usize];
+    let mut globals: Vec<(Vec3, Quat)> = Vec::new();
+    fragment.motion.globals((clock - fragment.begin) as usize, &mut globals);
+    [palm(&globals, LEFT_HAND), palm(&globals, RIGHT_HAND)]
 }
 
 /// The place seen in a mirror on the plane x = 0.
@@ -170,6 +211,15 @@ impl PatchSet {
         for kind in &self.kinds {
             for (k, prop) in kind.props.iter().enumerate() {
                 problems.extend(prop.problems(kind).into_iter().map(|p| (kind.name.clone(), p)));
+                for end in [0, 1] {
+                    let anchor = |p: &PatchProp| p.anchors()[end].filter(|_| [p.before, p.after][end].is_some());
+                    let role = |p: &PatchProp| anchor(p).map(|a| a.0);
+                    if let Some(other) = kind.props[..k].iter().find(|o| role(o).is_some() && role(o) == role(prop)) {
+                        let when = ["before", "after"][end];
+                        let problem = format!("{} and {} both lie there {when} one role", other.name, prop.name);
+                        problems.push((kind.name.clone(), problem));
+                    }
+                }
                 for other in kind.props[..k].iter().filter(|other| in_same_hands(prop, other)) {
                     problems.push((kind.name.clone(), format!("{} and {} in the same hands", other.name, prop.name)));
                 }

@@ -8,8 +8,6 @@ use super::{Body, Segment, smoothstep};
 use crate::motion::joint::{LEFT_FOOT, RIGHT_FOOT};
 use crate::motion::{Foot, JOINT_COUNT, canonical};
 
-/// A foot that falls short of its place by more than this is told, metres.
-const MAX_MISS: f32 = 0.003;
 /// Frames over which hips come down and rise again.
 const LOWERING_FRAMES: usize = 5;
 /// A swing this long (frames) forgets the plant before it.
@@ -66,15 +64,15 @@ pub(super) fn lock(segments: &[Segment], body: &mut Body) {
         let down = lowering[f];
         body.root[f].y -= down;
         for (k, (_, ankle)) in legs.into_iter().enumerate() {
-            let shift = offsets[k][f] + Vec3::Y * down;
+            let mut shift = offsets[k][f] + Vec3::Y * down;
             let pose = &mut body.rotations[f * JOINT_COUNT..(f + 1) * JOINT_COUNT];
             canonical().globals(body.root[f], pose, &mut globals);
-            leg::lift_toes(pose, &mut globals, ankle, shift.y);
-            if shift.length_squared() > 1e-10 {
-                let missed = leg::plant(pose, &globals, ankle, shift);
-                if missed > MAX_MISS && body.strained.last() != Some(&f) {
-                    body.strained.push(f);
-                }
+            shift.y += leg::lift_toes(pose, &mut globals, ankle, shift.y);
+            if shift.length_squared() > 1e-10
+                && leg::plant(pose, &globals, ankle, shift).is_strained()
+                && body.strained.last() != Some(&f)
+            {
+                body.strained.push(f);
             }
         }
     }

@@ -26,25 +26,30 @@ const APPROACH_FRAMES: f32 = 20.0;
 /// A touching hand or a foot that falls short of its place by more than this is told, metres.
 const MAX_MISS: f32 = 0.004;
 /// A joint that is further beyond its limits than the canonical body's by more than this is told, radians.
-const MAX_EXCESS: f32 = 3.5 / 180.0 * std::f32::consts::PI;
+const MAX_EXCESS: f32 = 2.5 / 180.0 * std::f32::consts::PI;
 
-/// A hand that touches somebody or holds a box, in frames of the body's motion.
+/// A hand that touches somebody or holds a box, or hips that sit on one, in frames of the body's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
-    hand: JointId,
+    joint: JointId,
     begin: f32,
     end: f32,
 }
 
 impl Hold {
-    /// 1 while the hand touches, less the longer before or after.
+    /// 1 while it touches, less the longer before or after.
     fn weight(&self, frame: f32) -> f32 {
         let away = (self.begin - frame).max(frame - self.end).max(0.0);
         1.0 - smoothstep(away / APPROACH_FRAMES)
     }
 }
 
-/// When which hands touch others or hold a box over a chain of segments; `begin` is the first frame of the body's
+/// How much a joint is held at a frame.
+fn weight(holds: &[Hold], joint: JointId, frame: usize) -> f32 {
+    holds.iter().filter(|h| h.joint == joint).map(|h| h.weight(frame as f32)).fold(0.0, f32::max)
+}
+
+/// When which hands touch others or hold a box, or hips sit on one, over a chain of segments; `begin` is the first frame of the body's
 /// motion.
 pub fn holds(segments: &[Segment], begin: u32) -> Vec<Hold> {
     let mut holds = Vec::new();
@@ -59,12 +64,15 @@ pub fn holds(segments: &[Segment], begin: u32) -> Vec<Hold> {
                     BodyPart::RightHand => RIGHT_HAND,
                     _ => continue,
                 };
-                holds.push(Hold { hand, begin: frame(contact.begin) - 1.0, end: frame(contact.end) + 1.0 });
+                holds.push(Hold { joint: hand, begin: frame(contact.begin) - 1.0, end: frame(contact.end) + 1.0 });
             }
         }
         for hold in segment.kind.props.iter().flat_map(|p| &p.holds).filter(|h| h.role == role) {
             let (begin, end) = (frame(hold.begin) - 1.0, frame(hold.end) + 1.0);
-            holds.extend([LEFT_HAND, RIGHT_HAND].map(|hand| Hold { hand, begin, end }));
+            holds.extend([LEFT_HAND, RIGHT_HAND].map(|joint| Hold { joint, begin, end }));
+        }
+        for seat in segment.kind.props.iter().flat_map(|p| &p.sat).filter(|s| s.role == role) {
+            holds.push(Hold { joint: HIPS, begin: frame(seat.begin) - 1.0, end: frame(seat.end) + 1.0 });
         }
     }
     holds
@@ -78,7 +86,7 @@ pub fn fit(body: &Body, holds: &[Hold], build: &Build) -> Body {
     if &build.skeleton == canonical() {
         return out;
     }
-    let mut poses = Poses::new(body, &build.skeleton);
+    let mut poses = Poses::new(body, holds, &build.skeleton);
     let lowering = poses.lowering(build.leg());
     for (f, down) in lowering.into_iter().enumerate() {
         let lift = poses.lift(f, build.leg()) - down;
@@ -106,19 +114,22 @@ struct Poses<'a> {
     bones: &'a Skeleton,
     /// Global joint transforms of the canonical body, frame-major.
     canonical: Vec<(Vec3, Quat)>,
+    /// How much the hips are free to rise, per frame: not at all while they sit.
+    free: Vec<f32>,
     /// Joint positions of the build's frame in hand.
     places: [Vec3; JOINT_COUNT],
 }
 
 impl<'a> Poses<'a> {
-    fn new(body: &Body, bones: &'a Skeleton) -> Self {
+    fn new(body: &Body, holds: &[Hold], bones: &'a Skeleton) -> Self {
         let mut globals = Vec::new();
         let mut all = Vec::with_capacity(body.rotations.len());
         for f in 0..body.root.len() {
             body.globals(f, &mut globals);
             all.extend_from_slice(&globals);
         }
-        Self { bones, canonical: all, places: [Vec3::ZERO; JOINT_COUNT] }
+        let free = (0..body.root.len()).map(|f| 1.0 - weight(holds, HIPS, f)).collect();
+        Self { bones, canonical: all, free, places: [Vec3::ZERO; JOINT_COUNT] }
     }
 
     fn frames(&self) -> usize {
@@ -133,7 +144,7 @@ impl<'a> Poses<'a> {
     fn lift(&self, f: usize, leg: f32) -> f32 {
         let pose = self.frame(f);
         let hips = 0.5 * (pose[LEFT_UP_LEG].0.y + pose[RIGHT_UP_LEG].0.y);
-        (hips - ANKLE_HEIGHT).max(0.0) * (leg / canonical_leg() - 1.0)
+        (hips - ANKLE_HEIGHT).max(0.0) * (leg / canonical_leg() - 1.0) * self.free[f]
     }
 
     /// How far the lifted hips must come down on each frame for no leg to be straighter than it was, smoothed.
@@ -171,7 +182,7 @@ impl<'a> Poses<'a> {
             missed = missed.max(self.reach(f, ankle, target, Vec3::Z, pose));
         }
         for hand in [LEFT_HAND, RIGHT_HAND] {
-            let held = holds.iter().filter(|h| h.hand == hand).map(|h| h.weight(f as f32)).fold(0.0, f32::max);
+            let held = weight(holds, hand, f);
             if held > 0.0 {
                 let target = self.places[hand].lerp(self.frame(f)[hand].0, held);
                 let short = self.reach(f, hand, target, Vec3::NEG_Z, pose);
@@ -269,7 +280,7 @@ mod tests {
             motion.rotations[f * JOINT_COUNT + RIGHT_FORE_ARM] = Quat::from_rotation_y(0.9);
         }
         let original = body(&motion);
-        let hold = Hold { hand: RIGHT_HAND, begin: 70.0, end: 80.0 };
+        let hold = Hold { joint: RIGHT_HAND, begin: 70.0, end: 80.0 };
         for build in Build::catalogue().iter().flatten() {
             let fitted = fit(&original, &[hold], build);
             assert!(fitted.strained.is_empty(), "{}", build.name);
@@ -295,7 +306,7 @@ mod tests {
         for f in 0..motion.len() {
             motion.rotations[f * JOINT_COUNT + LEFT_ARM] = Quat::from_rotation_z(1.5);
         }
-        let hold = Hold { hand: LEFT_HAND, begin: 10.0, end: 12.0 };
+        let hold = Hold { joint: LEFT_HAND, begin: 10.0, end: 12.0 };
         let small = Build::catalogue().iter().min_by(|a, b| a[0].stature().total_cmp(&b[0].stature())).unwrap();
         let fitted = fit(&body(&motion), &[hold], &small[0]);
         assert_eq!(fitted.strained, [10, 11, 12]);

@@ -11,6 +11,12 @@ use crate::motion::{JOINT_COUNT, canonical};
 const LEG_STRETCH: f32 = 0.995;
 /// How far the tips of toes may sink into the floor, metres.
 const TOE_SLACK: f32 = 0.005;
+/// How much further they may sink in before the foot comes up, metres.
+const TOE_SINKING: f32 = 0.008;
+/// A foot that falls short of its place by more than this is told, metres.
+const MAX_MISS: f32 = 0.003;
+/// A hip that is turned further beyond its limits than before by more than this is told, radians.
+const MAX_OVERTURN: f32 = 2.0 / 180.0 * std::f32::consts::PI;
 /// Hips come down by this much before a heel comes up, metres.
 const EASY_LOWERING: f32 = 0.045;
 /// Most that hips are lowered, metres.
@@ -82,6 +88,22 @@ impl Leg {
     }
 }
 
+/// How well a leg did what was asked of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Planted {
+    /// How far the foot falls short of its place, metres.
+    missed: f32,
+    /// How much further beyond its limits the hip is turned than before, radians.
+    overturned: f32,
+}
+
+impl Planted {
+    /// True if no leg could do it: another way has to be found.
+    pub fn is_strained(&self) -> bool {
+        self.missed > MAX_MISS || self.overturned > MAX_OVERTURN
+    }
+}
+
 /// A leg led to its foot: rotations in the world, and how far it falls short, metres.
 struct Bent {
     up: Quat,
@@ -89,10 +111,9 @@ struct Bent {
     missed: f32,
 }
 
-/// Moves a foot by `shift`, lifting its heel where the leg is too short; returns how far it falls short, metres.
-/// `globals` are the pose's joints in the world before. An ankle that would turn beyond its limits, and beyond what it
+/// Moves a foot by `shift`, lifting its heel where the leg is too short. `globals` are the pose's joints in the world before. An ankle that would turn beyond its limits, and beyond what it
 /// was, takes the foot with it, about the ball.
-pub(super) fn plant(pose: &mut [Quat], globals: &[(Vec3, Quat)], ankle: usize, shift: Vec3) -> f32 {
+pub(super) fn plant(pose: &mut [Quat], globals: &[(Vec3, Quat)], ankle: usize, shift: Vec3) -> Planted {
     debug_assert_eq!(pose.len(), JOINT_COUNT);
     let leg = Leg::new(globals, ankle, shift);
     let mut foot = leg.heel_lift() * globals[ankle].1;
@@ -104,32 +125,36 @@ pub(super) fn plant(pose: &mut [Quat], globals: &[(Vec3, Quat)], ankle: usize, s
         bent = leg.bend(globals, ankle, foot);
     }
     let (up, knee, toe) = (ankle - 2, ankle - 1, ankle + 1);
-    pose[up] = (globals[0].1.inverse() * bent.up).normalize();
+    let hip = (globals[0].1.inverse() * bent.up).normalize();
+    let over = excess(up, hip);
+    let overturned = if over > MAX_OVERTURN { over - excess(up, pose[up]) } else { 0.0 };
+    pose[up] = hip;
     pose[knee] = (bent.up.inverse() * bent.knee).normalize();
     pose[ankle] = (bent.knee.inverse() * foot).normalize();
     // The toes stay on the floor, as far as they bend.
     let flat = (foot.inverse() * globals[toe].1).normalize();
     pose[toe] = hold_back(toe, flat, || excess(toe, pose[toe]));
-    bent.missed
+    Planted { missed: bent.missed, overturned }
 }
 
 /// Bends the toes up where their tip would be more than [`TOE_SLACK`] below the floor once the foot is moved up by
-/// `raise`.
-pub(super) fn lift_toes(pose: &mut [Quat], globals: &mut [(Vec3, Quat)], ankle: usize, raise: f32) {
+/// `raise`; returns by how much more the foot must come up where toes would have to bend further than they can, metres.
+pub(super) fn lift_toes(pose: &mut [Quat], globals: &mut [(Vec3, Quat)], ankle: usize, raise: f32) -> f32 {
     let toe = ankle + 1;
     let (ball, turn) = globals[toe];
     let tip = turn * canonical().joints[toe].tip.expect("toes have tips");
     let lowest = -TOE_SLACK - (ball.y + raise);
     if tip.y >= lowest {
-        return;
+        return 0.0;
     }
     let slope = |y: f32| (y / tip.length()).clamp(-1.0, 1.0).asin();
     let axis = tip.cross(Vec3::Y).try_normalize().unwrap_or(turn * Vec3::NEG_X);
     let lifted = Quat::from_axis_angle(axis, slope(lowest) - slope(tip.y)) * turn;
     let bent = (globals[ankle].1.inverse() * lifted).normalize();
-    // Toes that would have to bend further than they can sink in a little.
     pose[toe] = hold_back(toe, bent, || excess(toe, pose[toe]));
     globals[toe].1 = (globals[ankle].1 * pose[toe]).normalize();
+    // Toes that would have to bend further than they can sink in a little.
+    (lowest - TOE_SINKING - (globals[toe].1 * canonical().joints[toe].tip.expect("toes have tips")).y).max(0.0)
 }
 
 #[cfg(test)]
@@ -140,21 +165,21 @@ mod tests {
     type Globals = Vec<(Vec3, Quat)>;
 
     /// A person at rest with the left foot to be moved by `shift`: what is missed, and the joints after.
-    fn planted(shift: Vec3) -> (f32, Globals, Globals) {
+    fn planted(shift: Vec3) -> (Planted, Globals, Globals) {
         let mut pose = [Quat::IDENTITY; JOINT_COUNT];
         let root = canonical().joints[0].offset;
         let (mut before, mut after) = (Vec::new(), Vec::new());
         canonical().globals(root, &pose, &mut before);
-        let missed = plant(&mut pose, &before, LEFT_FOOT, shift);
+        let planted = plant(&mut pose, &before, LEFT_FOOT, shift);
         canonical().globals(root, &pose, &mut after);
-        (missed, before, after)
+        (planted, before, after)
     }
 
     #[test]
     fn a_foot_in_reach_moves_as_it_is() {
         let shift = Vec3::new(0.02, 0.06, 0.1);
-        let (missed, before, after) = planted(shift);
-        assert!(missed < 1e-4, "{missed}");
+        let (planted, before, after) = planted(shift);
+        assert!(planted.missed < 1e-4 && !planted.is_strained(), "{planted:?}");
         assert!((after[LEFT_FOOT].0 - before[LEFT_FOOT].0 - shift).length() < 1e-4);
         assert!(after[LEFT_FOOT].1.angle_between(before[LEFT_FOOT].1) < 1e-3);
     }
@@ -162,8 +187,8 @@ mod tests {
     #[test]
     fn a_heel_comes_up_where_the_leg_is_too_short_and_the_ball_stays() {
         let shift = Vec3::new(0.0, 0.0, -0.3);
-        let (missed, before, after) = planted(shift);
-        assert!(missed < 1e-3, "{missed}");
+        let (planted, before, after) = planted(shift);
+        assert!(planted.missed < 1e-3, "{planted:?}");
         let (ball, toe) = (LEFT_FOOT + 1, LEFT_FOOT + 1);
         assert!((after[ball].0 - before[ball].0 - shift).length() < 1e-3);
         assert!(after[LEFT_FOOT].0.y > before[LEFT_FOOT].0.y + 0.01, "the heel did not come up");
@@ -180,7 +205,7 @@ mod tests {
         let knee = Leg::new(&before, LEFT_FOOT, shift).bend(&before, LEFT_FOOT, before[LEFT_FOOT].1).knee;
         let unheld = excess(LEFT_FOOT, knee.inverse() * before[LEFT_FOOT].1);
         assert!(unheld > 0.1, "the test turns nothing too far: {unheld}");
-        let missed = plant(&mut pose, &before, LEFT_FOOT, shift);
+        let missed = plant(&mut pose, &before, LEFT_FOOT, shift).missed;
         canonical().globals(root, &pose, &mut after);
         let ball = LEFT_FOOT + 1;
         assert!(missed < 1e-3 && after[ball].0.distance(before[ball].0 + shift) < 2e-3, "{missed}");
@@ -199,10 +224,35 @@ mod tests {
         let tip = canonical().joints[toe].tip.unwrap();
         let raise = -globals[toe].0.y + 0.01;
         assert!(globals[toe].0.y + raise + (globals[toe].1 * tip).y < -0.01, "the test sinks nothing");
-        lift_toes(&mut pose, &mut globals, LEFT_FOOT, raise);
+        assert_eq!(lift_toes(&mut pose, &mut globals, LEFT_FOOT, raise), 0.0);
         canonical().globals(root, &pose, &mut globals);
         let height = globals[toe].0.y + raise + (globals[toe].1 * tip).y;
         assert!((height + TOE_SLACK).abs() < 1e-4, "{height}");
+    }
+
+    #[test]
+    fn a_foot_comes_up_for_toes_that_bend_no_further() {
+        let root = canonical().joints[0].offset;
+        let tip = |globals: &[(Vec3, Quat)]| globals[LEFT_FOOT + 1].1 * canonical().joints[LEFT_FOOT + 1].tip.unwrap();
+        let mut last = 0.0;
+        for step in 0..30 {
+            let mut pose = [Quat::IDENTITY; JOINT_COUNT];
+            pose[LEFT_FOOT] = Quat::from_rotation_x(step as f32 * 0.05) * Quat::from_rotation_z(1.2);
+            let mut globals = Vec::new();
+            canonical().globals(root, &pose, &mut globals);
+            let raise = -globals[LEFT_FOOT + 1].0.y;
+            let more = lift_toes(&mut pose, &mut globals, LEFT_FOOT, raise);
+            assert!(tip(&globals).y + more > -TOE_SLACK - TOE_SINKING - 1e-4, "step {step}");
+            assert!(more >= last && more - last < 0.01, "step {step}: {more} after {last}");
+            last = more;
+        }
+        assert!(last > 0.02, "the test bends toes too little: {last}");
+    }
+
+    #[test]
+    fn a_hip_that_turns_too_far_is_told() {
+        let (planted, ..) = planted(Vec3::new(0.1, 0.4, -0.7));
+        assert!(planted.overturned > MAX_OVERTURN && planted.is_strained(), "{planted:?}");
     }
 
     #[test]

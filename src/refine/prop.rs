@@ -3,7 +3,7 @@
 //! A box is where the palms that hold it are, level, its width along the line between them; so it follows its holder
 //! over stitches and deformed paths. Taken up it leaves the place where it rested within a moment, put down it comes to
 //! rest likewise; passed it goes from one pair of hands to the other while both hold it. Then all hands are led onto its
-//! faces by inverse kinematics, with a smooth beginning and end.
+//! faces by inverse kinematics, with a smooth beginning and end. A box that is only sat on stays where it is.
 
 use std::collections::BTreeMap;
 use std::f32::consts::{PI, TAU};
@@ -39,7 +39,20 @@ pub(super) fn lead(people: &[Vec<Segment>], bodies: &mut [Body], last_frame: u32
         life.turns.iter().for_each(|turn| life.put_hands(turn, &mut bodies[turn.person]));
         props.extend(life.prop(last_frame));
     }
+    props.extend(people.iter().flatten().flat_map(|segment| standing(segment, last_frame)));
     props
+}
+
+/// The boxes that nobody moves, on which the person of a segment is the first to sit.
+fn standing<'a>(segment: &'a Segment, last_frame: u32) -> impl Iterator<Item = Prop> + 'a {
+    let role = segment.placed.role;
+    segment.kind.props.iter().filter(|p| p.holds.is_empty()).filter_map(move |p| {
+        let (_, clock) = p.anchors()[0].filter(|a| a.0 == role)?;
+        let frame = (clock - segment.kind.fragments[role as usize].begin) as usize;
+        let place = p.before?.carried(world_from_patch(segment, frame));
+        let places = vec![place; last_frame as usize + 1];
+        Some(Prop { name: p.name.clone(), size: p.size, begin: 0, places, holds: vec![] })
+    })
 }
 
 /// A hold of a patch's box by one person.
@@ -48,21 +61,28 @@ struct Stint<'a> {
     prop: &'a PatchProp,
     /// First and last frame of the crowd, with fraction.
     span: [f32; 2],
-    /// Where the box rests in the world before its first hold and after its last, if this is one of them.
+    /// Where the box rests in the world before it is taken up and after it is put down.
     rests: [Option<Upright>; 2],
 }
 
 impl<'a> Stint<'a> {
     fn all(person: usize, segment: &Segment<'a>, prop: &'a PatchProp) -> impl Iterator<Item = Self> {
         let fragment = &segment.kind.fragments[segment.placed.role as usize];
-        let (role, last) = (segment.placed.role, prop.holds.len() - 1);
-        prop.holds.iter().enumerate().filter(move |(_, h)| h.role == role).map(move |(i, hold)| {
+        let role = segment.placed.role;
+        let kind = segment.kind;
+        (0..prop.holds.len()).filter(move |&i| prop.holds[i].role == role).map(move |i| {
+            let hold = &prop.holds[i];
             let [begin, end] = [hold.begin, hold.end].map(|clock| (clock - fragment.begin) as usize);
             let rest = |at: Option<Upright>, frame: usize| Some(at?.carried(world_from_patch(segment, frame)));
-            let before = if i == 0 { rest(prop.before, begin) } else { None };
-            let after = if i == last { rest(prop.after, end) } else { None };
+            // Where it rests between two holds as well.
+            let put_down = match prop.holds.get(i + 1) {
+                None => prop.after,
+                Some(next) if hold.end + 1 < next.begin => prop.place(kind, hold.end + 1),
+                Some(_) => None,
+            };
+            let taken_up = if i == 0 { prop.before } else { None };
             let span = [begin, end].map(|frame| segment.frame_of(frame as f32));
-            Self { person, prop, span, rests: [before, after] }
+            Self { person, prop, span, rests: [rest(taken_up, begin), rest(put_down, end)] }
         })
     }
 }
@@ -143,8 +163,8 @@ impl<'a> Found<'a> {
 struct Life<'a> {
     prop: &'a PatchProp,
     turns: Vec<Turn>,
-    /// Where it rests before the first turn and after the last.
-    rests: [Option<Upright>; 2],
+    /// Where it rests before the first turn.
+    first_rest: Option<Upright>,
 }
 
 /// A time over which a person holds a box, over any number of stitched patches.
@@ -160,6 +180,8 @@ struct Turn {
     /// How much the box is turned against what its holder calls ahead: half turns, since it is taken from the other
     /// side.
     flip: f32,
+    /// Where it rests afterwards, as its holder has it.
+    put: Option<Upright>,
 }
 
 impl Turn {
@@ -176,23 +198,31 @@ impl Turn {
     fn holds(&self, frame: i32) -> bool {
         self.first <= frame && frame <= self.last
     }
+
+    /// Where it rests afterwards, by its own idea of ahead.
+    fn rest(&self) -> Option<Upright> {
+        self.put.map(|r| Upright { heading: r.heading + self.flip, ..r })
+    }
 }
 
 impl<'a> Life<'a> {
     fn new(mut stints: Vec<Stint<'a>>, bodies: &[Body]) -> Self {
         stints.sort_by(|a, b| a.span[0].total_cmp(&b.span[0]).then(a.person.cmp(&b.person)));
         let prop = stints[0].prop;
-        let rests = [stints.iter().find_map(|s| s.rests[0]), stints.iter().rev().find_map(|s| s.rests[1])];
-        let mut spans: Vec<(usize, [f32; 2])> = Vec::new();
+        let mut spans: Vec<(usize, [f32; 2], Option<Upright>)> = Vec::new();
         for s in &stints {
             match spans.last_mut() {
-                Some((person, span)) if *person == s.person => span[1] = s.span[1],
-                _ => spans.push((s.person, s.span)),
+                Some((person, span, put)) if *person == s.person && put.is_none() => {
+                    (span[1], *put) = (s.span[1], s.rests[1]);
+                }
+                _ => spans.push((s.person, s.span, s.rests[1])),
             }
         }
+        let (taken, put) = (stints[0].rests[0], spans[spans.len() - 1].2);
         let mut turns: Vec<Turn> = Vec::new();
-        for (person, span) in spans {
+        for (person, span, put) in spans {
             let Some(mut turn) = grasp(person, span, prop, &bodies[person]) else { continue };
+            turn.put = put;
             if let Some(before) = turns.last() {
                 let meet = (before.last + turn.first) / 2;
                 let off = wrap_angle(before.place(meet).heading - turn.place(meet).heading);
@@ -200,34 +230,29 @@ impl<'a> Life<'a> {
             }
             turns.push(turn);
         }
-        Self { prop, turns, rests }
+        // Where nobody is seen with it, it rests all the time.
+        let first_rest = if turns.is_empty() { taken.or(put) } else { taken };
+        Self { prop, turns, first_rest }
     }
 
     /// The box at a frame; `None` where it is not there.
     fn place(&self, frame: i32) -> Option<Upright> {
-        let (Some(first), Some(last)) = (self.turns.first(), self.turns.last()) else {
-            return self.rests[0].or(self.rests[1]);
-        };
-        let after = self.rests[1].map(|r| Upright { heading: r.heading + last.flip, ..r });
-        if frame < first.first {
-            return self.rests[0];
-        }
-        if frame > last.last {
-            return after;
-        }
-        let next = self.turns.iter().rposition(|t| t.first <= frame).expect("not before the first turn");
+        let Some(next) = self.turns.iter().rposition(|t| t.first <= frame) else { return self.first_rest };
         let (now, before) = (&self.turns[next], next.checked_sub(1).map(|i| &self.turns[i]));
+        if frame > now.last {
+            return now.rest();
+        }
         let mut place = now.place(frame);
         if let Some(before) = before.filter(|b| b.holds(frame)) {
             let share = (frame - now.first) as f32 / (before.last - now.first).max(1) as f32;
             place = before.place(frame).lerp(place, smoothstep(share));
         }
         let at = frame as f32;
-        if let Some(rest) = self.rests[0].filter(|_| next == 0) {
-            place = rest.lerp(place, smoothstep((at - first.span[0]) / LIFT_FRAMES));
+        if let Some(rest) = before.map_or(self.first_rest, Turn::rest) {
+            place = rest.lerp(place, smoothstep((at - now.span[0]) / LIFT_FRAMES));
         }
-        if let Some(rest) = after.filter(|_| next + 1 == self.turns.len()) {
-            place = rest.lerp(place, smoothstep((last.span[1] - at) / LIFT_FRAMES));
+        if let Some(rest) = now.rest() {
+            place = rest.lerp(place, smoothstep((now.span[1] - at) / LIFT_FRAMES));
         }
         Some(place)
     }
@@ -262,8 +287,8 @@ impl<'a> Life<'a> {
     /// The box of the crowd; `None` if it is never seen.
     fn prop(&self, last_frame: u32) -> Option<Prop> {
         let (first, last) = (self.turns.first(), self.turns.last());
-        let begin = if self.rests[0].is_some() { 0 } else { first.map_or(0, |t| t.first) };
-        let end = if self.rests[1].is_some() { last_frame as i32 } else { last.map_or(last_frame as i32, |t| t.last) };
+        let begin = if self.first_rest.is_some() { 0 } else { first.map_or(0, |t| t.first) };
+        let end = last.filter(|t| t.put.is_none()).map_or(last_frame as i32, |t| t.last);
         let mut places: Vec<Upright> = (begin..=end).map_while(|f| self.place(f)).collect();
         for i in 1..places.len() {
             places[i].heading += ((places[i - 1].heading - places[i].heading) / TAU).round() * TAU;
@@ -290,5 +315,5 @@ fn grasp(person: usize, span: [f32; 2], prop: &PatchProp, body: &Body) -> Option
         let palms = HANDS.map(|hand| palm(&globals, hand));
         (prop.between(palms[0], palms[1]), palms)
     });
-    (first <= last).then(|| Turn { person, span, first, last, grasps: grasps.collect(), flip: 0.0 })
+    (first <= last).then(|| Turn { person, span, first, last, grasps: grasps.collect(), flip: 0.0, put: None })
 }

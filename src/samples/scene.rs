@@ -17,6 +17,10 @@ pub(super) const BOX: [f32; 3] = [0.36, 0.26, 0.30];
 /// Where its middle is, seen from the middle between the palms: up and ahead (m). Palms are on the near half, so that
 /// two people have room for their hands.
 pub(super) const GRIP: [f32; 2] = [-0.03, 0.05];
+/// Size of the crate that people sit on.
+pub(super) const CRATE: [f32; 3] = [0.46, 0.40, 0.38];
+/// How far ahead of a sitter's hips its middle is.
+const SEAT: f32 = -0.03;
 
 /// A take in the making. Frames are at 30 per second.
 pub(super) struct Scene {
@@ -25,11 +29,19 @@ pub(super) struct Scene {
     contacts: Vec<TakeContact>,
     patches: Vec<TakePatch>,
     box_holds: Vec<TakeHold>,
+    seats: Vec<TakeHold>,
 }
 
 impl Scene {
     pub fn new(name: &str, actors: Vec<Actor>) -> Self {
-        Self { name: name.to_owned(), actors, contacts: Vec::new(), patches: Vec::new(), box_holds: Vec::new() }
+        Self {
+            name: name.to_owned(),
+            actors,
+            contacts: Vec::new(),
+            patches: Vec::new(),
+            box_holds: vec![],
+            seats: vec![],
+        }
     }
 
     /// A patch of people (actor, first frame, last frame); `core` is the time of interaction in seconds.
@@ -54,10 +66,24 @@ impl Scene {
         self.box_holds.push(TakeHold { person, begin, end });
     }
 
-    /// The box as a prop of a take that lasts `end` seconds.
+    /// A person sits on a crate of their own over a time in seconds.
+    pub fn sit(&mut self, person: usize, begin: f32, end: f32) {
+        self.seats.push(TakeHold { person, begin, end });
+    }
+
+    /// The boxes as props of a take that lasts `end` seconds.
     fn props(&self, end: f32) -> Vec<TakeProp> {
         let held: Vec<_> = self.box_holds.iter().map(|h| TakeHold { end: h.end.min(end), ..h.clone() }).collect();
-        if held.is_empty() { vec![] } else { vec![TakeProp { name: "box".into(), size: BOX, grip: GRIP, held }] }
+        let carried = TakeProp { name: "box".into(), size: BOX, grip: GRIP, held, sat: vec![], seat: 0.0 };
+        let crates = self.seats.iter().enumerate().map(|(i, seat)| TakeProp {
+            name: if i == 0 { "crate".into() } else { format!("crate-{}", i + 1) },
+            size: CRATE,
+            grip: GRIP,
+            held: vec![],
+            sat: vec![seat.clone()],
+            seat: SEAT,
+        });
+        (!carried.held.is_empty()).then_some(carried.clone()).into_iter().chain(crates).collect()
     }
 
     /// Plays the scene.

@@ -7,7 +7,7 @@ use super::builds::people;
 use super::domain::Domain;
 use super::library::Library;
 use super::occupancy::{Occupancy, Piece, PieceId};
-use crate::patch::{PatchKind, filed_rotation};
+use crate::patch::{Fragment, PatchKind, filed_rotation};
 use crate::refine::{Body, Performance};
 use crate::stage::{Character, Crowd, DomainInfo, FragmentUse, Instance};
 
@@ -33,6 +33,12 @@ impl<'a> Chains<'a> {
     /// Number of people in a piece's patch.
     pub fn people_of(self, piece: &Piece) -> usize {
         self.library.set.kinds[self.library.roles[piece.role as usize].kind as usize].people()
+    }
+
+    /// What was captured of a piece's person.
+    pub fn fragment(self, piece: &Piece) -> &'a Fragment {
+        let role = &self.library.roles[piece.role as usize];
+        &self.library.set.kinds[role.kind as usize].fragments[role.role as usize]
     }
 
     /// The piece a person is in at `tick`.
@@ -82,7 +88,7 @@ pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, played: Performance
     let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
     let mut instances = Vec::new();
     let mut characters = Vec::with_capacity(bodies.len());
-    for (person, (build, body)) in people(chains, bodies, &props, seed).into_iter().enumerate() {
+    for (person, (build, body)) in people(chains, &bodies, &props, seed).into_iter().enumerate() {
         let mut fragments: Vec<FragmentUse> =
             segments_of(chains, person).into_iter().map(|(_, placed)| placed).collect();
         let roles: BTreeMap<u32, u32> = chains.pieces(person).map(|p| (p.instance, p.role)).collect();

@@ -1,19 +1,19 @@
 //! Exact tests of the boxes that people carry or that lie there: they enter no body, no wall and no other box.
 
-use glam::{Quat, Vec2, Vec3};
+use glam::Vec2;
 
 use super::bake::Chains;
 use super::domain::Domain;
+use super::figure::{Figure, REACH, TOLERANCE, frame_at};
+use super::piece::Piece;
 use super::tracks::TrackId;
 use crate::geom::{Capsule, Cuboid};
-use crate::motion::body_capsules;
+use crate::motion::canonical;
 use crate::refine::{Body, Performance};
 use crate::stage::Prop;
 
-/// Interpenetration that is let pass, metres.
-const TOLERANCE: f32 = 0.005;
-/// No body reaches further from its hips than this, metres.
-const REACH: f32 = 1.1;
+/// A box nearer to where one lies than this is that box, metres.
+const SAME: f32 = 0.02;
 /// Points of a box's edges that are tested against walls are this far apart, metres.
 const SPACING: f32 = 0.06;
 
@@ -23,7 +23,7 @@ pub(super) fn in_the_way(chains: Chains, played: &Performance, tick: i32) -> Vec
         played.props.iter().filter_map(|p| Some((p, p.at_frame(u32::try_from(tick).ok()?)?))).collect();
     let mut pairs = Vec::new();
     for (i, (prop, cuboid)) in here.iter().enumerate() {
-        let keeper = keeper(prop, tick);
+        let keeper = keeper(prop, tick).or_else(|| sitter(chains, prop));
         for (t, body) in played.bodies.iter().enumerate() {
             if depth_in_body(cuboid, body, tick) > TOLERANCE && !is_partner(chains, prop, t, tick) {
                 // Where it lies, who runs into it is to go another way.
@@ -39,7 +39,7 @@ pub(super) fn in_the_way(chains: Chains, played: &Performance, tick: i32) -> Vec
         for (other, theirs) in &here[..i] {
             let near = cuboid.at.middle.distance(theirs.at.middle) < cuboid.radius() + theirs.radius();
             if near && cuboid.overlap(theirs) > TOLERANCE {
-                let second = self::keeper(other, tick).unwrap_or(keeper);
+                let second = self::keeper(other, tick).or_else(|| sitter(chains, other)).unwrap_or(keeper);
                 pairs.push((keeper.min(second), keeper.max(second)));
             }
         }
@@ -62,27 +62,32 @@ fn is_partner(chains: Chains, prop: &Prop, person: TrackId, tick: i32) -> bool {
     holders.any(|h| h == person || instance(h) == mine) || is_lifting(chains, prop, person, tick)
 }
 
-/// True while a person is in the patch in which they take the lying box up or put it down.
+/// True while a person is in the patch in which they take the lying box up, put it down or sit on it.
 fn is_lifting(chains: Chains, prop: &Prop, person: TrackId, tick: i32) -> bool {
     let Some(piece) = chains.piece_at(person, tick) else { return false };
     let ends = prop.holds.iter().filter(|h| h.character as TrackId == person).flat_map(|h| [h.begin, h.end]);
-    piece.leaves_box() && ends.into_iter().any(|f| (piece.begin..=piece.end).contains(&(f as i32)))
+    piece.leaves_box()
+        && (lies_by(chains, prop, piece) || ends.into_iter().any(|f| (piece.begin..=piece.end).contains(&(f as i32))))
+}
+
+/// True if a box that nobody ever holds is the one that a piece has people sit on.
+fn lies_by(chains: Chains, prop: &Prop, piece: &Piece) -> bool {
+    prop.holds.is_empty() && piece.lying(chains.library).any(|at| at.distance(prop.places[0].ground().position) < SAME)
+}
+
+/// Who is the first to sit on a box that nobody holds.
+fn sitter(chains: Chains, prop: &Prop) -> Option<TrackId> {
+    (0..chains.lists.len()).find(|&t| chains.pieces(t).any(|piece| lies_by(chains, prop, piece)))
 }
 
 /// How deep a box is in a body of canonical build at a tick, metres.
 fn depth_in_body(cuboid: &Cuboid, body: &Body, tick: i32) -> f32 {
-    let Some(frame) = usize::try_from(tick - body.begin as i32).ok().filter(|&f| f < body.root.len()) else {
-        return 0.0;
-    };
+    let Some(frame) = frame_at(body, tick) else { return 0.0 };
     let (middle, root) = (cuboid.at.middle, body.root[frame]);
     if Vec2::new(middle.x - root.x, middle.z - root.z).length() > REACH + cuboid.radius() {
         return 0.0;
     }
-    let mut globals: Vec<(Vec3, Quat)> = Vec::new();
-    let mut capsules = Vec::new();
-    body.globals(frame, &mut globals);
-    body_capsules(&globals, &mut capsules);
-    depth_in(cuboid, &capsules)
+    Figure::of(body, canonical(), tick).map_or(0.0, |figure| depth_in(cuboid, &figure.capsules))
 }
 
 /// How deep a box is in a body's capsules, metres; 0 if it is not.

@@ -13,8 +13,9 @@ use super::bake::{Chains, bake};
 use super::bridge::Taste;
 use super::domain::Domain;
 use super::enrich::enrich;
+use super::faults::faults;
 use super::library::Library;
-use super::mend::{dissolve, faults, mend, perform};
+use super::mend::{dissolve, mend, perform};
 use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
 use super::seed::seed_person;
 use super::tracks::Tracks;
@@ -41,7 +42,7 @@ const SWEEP_TICKS: i32 = 30;
 /// Rounds after which patches of several people are given up for a fault.
 const GENTLE_ROUNDS: usize = 6;
 /// States expanded to mend a fault.
-const MEND_EXPANSIONS: usize = 300;
+const MEND_EXPANSIONS: usize = 1500;
 /// How often patches of several people that mending cost are made up for.
 const REFILLS: usize = 4;
 /// Rounds of mending.

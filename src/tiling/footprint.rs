@@ -45,12 +45,19 @@ pub(super) fn footprints(kind: &PatchKind, role: u32, margin: f32) -> Vec<Footpr
         .collect()
 }
 
-/// True if a box counts as part of a role's body at a frame of the clock.
+/// True if a box counts as part of a role's body at a frame of the clock: while it is in the hands, and while it rests
+/// for who had it before or has it next, or for who alone sits on it.
 fn is_minded(prop: &PatchProp, role: u32, clock: u32) -> bool {
-    let (Some(first), Some(last)) = (prop.holds.first(), prop.holds.last()) else { return false };
-    prop.holds.iter().any(|h| h.role == role && h.begin <= clock && clock <= h.end)
-        || first.role == role && clock < first.begin
-        || last.role == role && clock > last.end
+    if prop.holds.is_empty() {
+        return prop.sat.first().is_some_and(|s| s.role == role);
+    }
+    let mut held = prop.holds.iter().filter(|h| h.begin <= clock && clock <= h.end).peekable();
+    if held.peek().is_some() {
+        return held.any(|h| h.role == role);
+    }
+    let next = prop.holds.iter().position(|h| clock < h.begin);
+    let before = next.unwrap_or(prop.holds.len()).checked_sub(1);
+    [before, next].into_iter().flatten().any(|k| prop.holds[k].role == role)
 }
 
 /// The discs of a box that lies there, relative to its place: a row of circles across and one along.

@@ -222,7 +222,7 @@ fn prepare(set: &PatchSet, kind: u32, role: u32, limits: &Limits, fastest: &[f32
     }
 }
 
-/// The boxes that a role is the first to take up and the last to put down.
+/// The boxes that a role is the first to take up (or sits on) and the last to put down.
 fn rests(kind: &PatchKind, role: u32) -> [Option<Rest>; 2] {
     let fragment = &kind.fragments[role as usize];
     let rest = |prop: &PatchProp, at: Upright, clock: u32| {
@@ -231,13 +231,11 @@ fn rests(kind: &PatchKind, role: u32) -> [Option<Rest>; 2] {
         let from_path = fragment.motion.path.at(frame).inverse().then(at.ground());
         Rest { frame, from_path, reach: reach(&footprint), footprint }
     };
-    let before = kind.props.iter().find_map(|p| {
-        let hold = p.holds.first().filter(|h| h.role == role)?;
-        Some(rest(p, p.before?, hold.begin))
-    });
-    let after = kind.props.iter().find_map(|p| {
-        let hold = p.holds.last().filter(|h| h.role == role)?;
-        Some(rest(p, p.after?, hold.end))
+    let [before, after] = [0, 1].map(|end| {
+        kind.props.iter().find_map(|p| {
+            let (_, clock) = p.anchors()[end].filter(|a| a.0 == role)?;
+            Some(rest(p, [p.before, p.after][end]?, clock))
+        })
     });
     [before, after]
 }

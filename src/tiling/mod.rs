@@ -8,6 +8,8 @@ mod builds;
 mod domain;
 mod engine;
 mod enrich;
+mod faults;
+mod figure;
 mod footprint;
 mod library;
 mod mend;

@@ -134,6 +134,12 @@ impl Piece {
         [self.bodies.first(), self.bodies.last()].into_iter().flatten().any(|b| b.frame >= LYING)
     }
 
+    /// The places of the boxes that lie there before or after the piece.
+    pub fn lying<'a>(&'a self, library: &'a Library) -> impl Iterator<Item = Vec2> + 'a {
+        let rests = library.roles[self.role as usize].rests.iter().flatten();
+        rests.map(|rest| self.path.at(rest.frame).then(rest.from_path).position)
+    }
+
     /// True if this piece and another are ever in each other's way.
     pub fn meets(&self, other: &Self, library: &Library) -> bool {
         let until = |p: &Self| p.shown_from + p.bodies.len() as i32;
@@ -208,6 +214,7 @@ mod tests {
             size: [0.4, 0.3, 0.3],
             grip: [0.0; 2],
             holds: vec![PropHold { role: 0, begin: 5, end: 15 }],
+            sat: vec![],
             before: Some(lies),
             after: Some(lies),
         });

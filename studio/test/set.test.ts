@@ -4,6 +4,7 @@ import { FileProblem } from "../src/crowd/container";
 import { Pose, samplePose, sampleProp } from "../src/crowd/sample";
 import { crowdOf } from "../src/set/crowd";
 import { listed, stepKind } from "../src/set/list";
+import { measuresOf } from "../src/set/measure";
 import { seconds } from "../src/set/model";
 import { readSet } from "../src/set/reader";
 import { MANY, Store } from "../src/store";
@@ -90,6 +91,34 @@ describe("the boxes of a patch set written by Rust", () => {
       }
     }
     expect(sampleProp(crowdOf(set, set.kinds[1]), 0, 11 / set.fps, at)).toBe(false);
+  });
+});
+
+describe("what is measured of a kind", () => {
+  type Told = { turn_deg: number; words: string[] } & Record<
+    "people" | "seconds" | "speed" | "fastest" | "radius",
+    number
+  >;
+  const { measures } = JSON.parse(readFileSync(golden("kinds.json"), "utf8")) as { measures: Told[] };
+
+  it("is what Rust measures", () => {
+    expect(measures).toHaveLength(set.kinds.length);
+    for (const [k, told] of measures.entries()) {
+      const found = measuresOf(set, set.kinds[k]);
+      expect(found.words).toEqual(told.words);
+      expect(found.people).toBe(told.people);
+      for (const name of ["seconds", "speed", "fastest", "radius"] as const) {
+        expect(found[name]).toBeCloseTo(told[name], 2);
+      }
+      expect(found.turnDeg).toBeCloseTo(told.turn_deg, 2);
+    }
+  });
+
+  it("is found by the words of the search", () => {
+    const all = { words: "", people: 0, mirrored: true };
+    expect(measures[1].words).toContain("contact");
+    expect(listed(set, { ...all, words: "contact" })).toEqual([1]);
+    expect(listed(set, { ...all, words: "step prop" })).toEqual([0]);
   });
 });
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
 
-from crowdquilt._core import __version__
+from crowdquilt._core import CrowdquiltError, __version__
 
 CHECK_FAILED = 1
 BAD_INPUT = 2
@@ -26,6 +27,17 @@ console = Console(highlight=False)
 def example(*lines: str) -> str:
     """The foot of a command's help: how it is called."""
     return "[bold]Example[/bold]\n\n" + "\n\n".join(f"  [cyan]$ crowdquilt {line}[/cyan]" for line in lines)
+
+
+PICTURES = (".png", ".svg", ".pdf")
+
+
+def expect_picture(*files: Path | None) -> None:
+    """Refuse files that are no pictures by their names."""
+    for file in files:
+        if file is not None and file.suffix not in PICTURES:
+            suffix = file.suffix or "no suffix"
+            raise CrowdquiltError(f"{file}: expected a picture ({', '.join(PICTURES)}), found {suffix}")
 
 
 def _version(wanted: bool) -> None:

@@ -11,11 +11,12 @@ from rich.markup import escape
 
 from crowdquilt import inspection, motion, patch, samples
 from crowdquilt._core import CrowdquiltError
-from crowdquilt.cli.app import app, console, example
+from crowdquilt.cli.app import app, console, example, expect_picture
 from crowdquilt.cli.progress import make_set
 from crowdquilt.cli.tables import facts, kind_table, take_table
 from crowdquilt.outputs import whole_folder
 from crowdquilt.plot.capture import capture as draw
+from crowdquilt.plot.events import events as draw_events
 
 
 @app.command("samples", epilog=example("samples -o out/samples"))
@@ -105,7 +106,7 @@ def tell(found: dict[str, Any]) -> None:
 @app.command(
     epilog=example(
         "patches out/samples -o samples.patches",
-        "patches captures/index.csv -o mine.patches --takes found",
+        "patches captures/index.csv -o mine.patches --takes found --plot events.png",
         "patches found --captures captures -o edited.patches",
         "patches out/samples --compose examples/compose -o out/composed.patches",
     )
@@ -127,6 +128,9 @@ def patches(
     compose: Annotated[
         list[Path] | None, typer.Option(help="File (.compose.toml) that composes a patch by hand, or folder of them.")
     ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw why something is an event: what was measured, thresholds, what was found.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Do not list takes and kinds.")] = False,
 ) -> None:
@@ -144,6 +148,7 @@ def patches(
         "near": near,
         "compose": compose,
     }
+    expect_picture(plot)
     try:
         made = make_set(source, captures, **{name: value for name, value in options.items() if value is not None})
     except ValueError as error:
@@ -153,6 +158,8 @@ def patches(
         raise CrowdquiltError(f"{source}: nothing to make patches of: {'; '.join(reasons)}")
     out.parent.mkdir(parents=True, exist_ok=True)
     made.set.save(out)
+    if plot is not None:
+        draw_events(made, plot)
     if takes is not None:
         with whole_folder(takes) as part:
             for name, text in made.take_files():

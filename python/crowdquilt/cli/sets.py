@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,10 +13,9 @@ from rich.markup import escape
 from rich.table import Table
 
 from crowdquilt import patch
-from crowdquilt._core import Connectivity, CrowdquiltError, PatchSet
-from crowdquilt.cli.app import app, console, example
-
-PICTURES = (".png", ".svg", ".pdf")
+from crowdquilt._core import Connectivity, Measures, PatchSet
+from crowdquilt.cli.app import app, console, example, expect_picture
+from crowdquilt.cli.tables import kind_table
 
 
 @app.command(epilog=example("kinds people.patches", "kinds people.patches --sheet sheet.png --groups groups.png"))
@@ -22,21 +23,22 @@ def kinds(
     patches: Annotated[Path, typer.Argument(help="Patch set (.patches).")],
     sheet: Annotated[Path | None, typer.Option(help="Draw every kind: a contact sheet (.png, .svg, .pdf).")] = None,
     groups: Annotated[Path | None, typer.Option(help="Draw the pose groups and what leads to what.")] = None,
+    each: Annotated[bool, typer.Option("--each", help="List every kind, mirrored copies left out.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Tell what kinds a patch set holds, how they follow each other, and what it lacks.
 
     A set is closed if people can go on from everywhere for ever; what would close it is said where it is not.
     """
-    for picture in (sheet, groups):
-        if picture is not None and picture.suffix not in PICTURES:
-            suffix = picture.suffix or "no suffix"
-            raise CrowdquiltError(f"{picture}: expected a picture ({', '.join(PICTURES)}), found {suffix}")
+    expect_picture(sheet, groups)
     made = PatchSet.load(patches)
     found = patch.connectivity(made)
     if as_json:
         print(json.dumps(summary(made, found), indent=2))
     else:
+        if each:
+            console.print(kind_table(made))
+            console.print()
         tell(made, found)
     if sheet is None and groups is None:
         return
@@ -63,28 +65,45 @@ def tell(patches: PatchSet, found: Connectivity) -> None:
         console.print(f"[yellow]advice[/yellow] {escape(advice)}", soft_wrap=True)
 
 
-def by_label(patches: PatchSet) -> dict[str, dict[int, int]]:
-    """How many kinds of each number of people have each kind's first label; mirrored copies are counted."""
-    counts: dict[str, dict[int, int]] = {}
-    for kind in patches.kinds:
-        label = kind.labels[0] if kind.labels else "no label"
-        of_label = counts.setdefault(label, {})
-        of_label[kind.people] = of_label.get(kind.people, 0) + 1
-    return dict(sorted(counts.items(), key=lambda item: (-sum(item[1].values()), item[0])))
+def by_label(patches: PatchSet) -> dict[str, list[Measures]]:
+    """What is measured of the kinds of each first label, the commonest label first; mirrored copies are counted."""
+    measured: dict[str, list[Measures]] = {}
+    for kind, found in zip(patches.kinds, patch.measures(patches), strict=True):
+        measured.setdefault(kind.labels[0] if kind.labels else "no label", []).append(found)
+    return dict(sorted(measured.items(), key=lambda item: (-len(item[1]), item[0])))
 
 
 def label_table(patches: PatchSet) -> Table:
-    """Kinds by their first label and number of people."""
-    counts = by_label(patches)
+    """Kinds by their first label: how many of each number of people, and what is measured of them."""
     people = sorted({kind.people for kind in patches.kinds})
     table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0), show_footer=True, footer_style="dim")
-    table.add_column("label", footer=f"{len(patches)} kinds")
+    table.add_column("label", footer=f"{len(patches)} kinds", no_wrap=True)
     for n in people:
         total = sum(kind.people == n for kind in patches.kinds)
         table.add_column("alone" if n == 1 else f"{n} people", justify="right", footer=str(total))
-    for label, of_label in counts.items():
-        table.add_row(escape(label), *(str(of_label.get(n, "")) for n in people))
+    for title in ("seconds", "m/s", "turn", "radius"):
+        table.add_column(title, justify="right", no_wrap=True)
+    table.add_column("measured")
+    for label, found in by_label(patches).items():
+        counts = (sum(m.people == n for m in found) for n in people)
+        turn = f"{max(abs(m.turn_deg) for m in found):.0f}°"
+        ranges = (both_ends(m.seconds for m in found), both_ends(m.speed for m in found), turn)
+        radius = both_ends(m.radius for m in found)
+        table.add_row(escape(label), *(str(n or "") for n in counts), *ranges, radius, " ".join(common_words(found)))
     return table
+
+
+def common_words(found: list[Measures]) -> list[str]:
+    """The words that hold for at least half of the kinds, the commonest first."""
+    counts = Counter(word for m in found for word in m.words)
+    return [word for word, count in counts.most_common() if 2 * count >= len(found)]
+
+
+def both_ends(values: Iterable[float]) -> str:
+    """The least and the most of values, or the one that all are."""
+    found = list(values)
+    least, most = f"{min(found):.1f}", f"{max(found):.1f}"
+    return least if least == most else f"{least}-{most}"
 
 
 def group_table(found: Connectivity) -> Table:
@@ -119,12 +138,19 @@ def summary(patches: PatchSet, found: Connectivity) -> dict[str, Any]:
     kinds = [
         {
             "name": k.name, "people": k.people, "seconds": round(k.seconds, 3), "labels": k.labels,
-            "contacts": k.contacts, "mirrored": k.mirrored,
+            "contacts": k.contacts, "mirrored": k.mirrored, "measures": measures_of(m),
             "ports": [{"entry": role.entry, "exit": role.exit} for role in k.roles],
         }
-        for k in patches.kinds
+        for k, m in zip(patches.kinds, patch.measures(patches), strict=True)
     ]  # fmt: skip
     return {"file": "patch set", "kinds": kinds, "connectivity": connectivity_of(found)}
+
+
+def measures_of(measured: Measures) -> dict[str, Any]:
+    """What is measured of a kind as plain data: metres, seconds, degrees."""
+    figures = ("seconds", "speed", "fastest", "radius", "turn_deg")
+    rounded_figures = {name: round(getattr(measured, name), 3) for name in figures}
+    return {"people": measured.people, **rounded_figures, "props": measured.props, "words": measured.words}
 
 
 def connectivity_of(found: Connectivity) -> dict[str, Any]:

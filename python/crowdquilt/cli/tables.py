@@ -7,6 +7,7 @@ from typing import Any
 from rich.markup import escape
 from rich.table import Table
 
+from crowdquilt import patch
 from crowdquilt._core import PatchSet, Report, Take
 
 
@@ -28,15 +29,17 @@ def facts(values: dict[str, Any]) -> Table:
 
 
 def kind_table(patches: PatchSet) -> Table:
-    """The kinds of a set, without mirrored copies."""
+    """The kinds of a set with what is measured of them, without mirrored copies."""
     table = Table(box=None, header_style="dim", padding=(0, 2, 0, 0))
-    for title in ("kind", "people", "seconds", "contacts", "ports"):
-        table.add_column(title, justify="left" if title in ("kind", "ports") else "right")
-    for kind in patches.kinds:
+    for title in ("kind", "people", "seconds", "m/s", "turn", "radius", "measured", "ports"):
+        words = title in ("kind", "measured", "ports")
+        table.add_column(title, justify="left" if words else "right", no_wrap=title != "measured", overflow="fold")
+    for kind, found in zip(patches.kinds, patch.measures(patches), strict=True):
         if not kind.mirrored:
-            ports = ", ".join(f"{role.entry} → {role.exit}" for role in kind.roles)
-            contacts = str(kind.contacts) if kind.contacts else ""
-            table.add_row(escape(kind.name), str(kind.people), f"{kind.seconds:.2f}", contacts, ports)
+            ports = "\n".join(f"{role.entry} → {role.exit}" for role in kind.roles)
+            speed, turn = f"{found.speed:.1f}", f"{found.turn_deg:+.0f}°"
+            sizes = (str(kind.people), f"{found.seconds:.2f}", speed, turn, f"{found.radius:.1f} m")
+            table.add_row(escape(kind.name), *sizes, " ".join(found.words), ports)
     return table
 
 

@@ -15,6 +15,7 @@ mod feet;
 mod floor;
 mod guess;
 mod height;
+mod hinge;
 mod names;
 mod rest;
 mod rig;
@@ -81,6 +82,7 @@ fn bodies(clips: &[Clip], rigs: &[Rig]) -> Result<Vec<Motion>> {
         let mut motion = build::motion(&canonical_clip);
         motion.plants = plants::detect(&motion, &PlantOptions::default());
         feet::pin(&mut motion);
+        hinge::straighten(&mut motion);
         Ok(motion)
     };
     clips.iter().zip(rigs).zip(&ratios).map(person).collect()

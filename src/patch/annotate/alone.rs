@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Annotation, labels, seconds};
+use super::{Annotation, holds, labels, seconds};
 use crate::motion::gait::Phase;
 use crate::motion::take::{TakeFile, TakePatch, TakeRole};
 use crate::motion::{FPS, Motion, plants};
@@ -44,6 +44,8 @@ pub(super) struct Piece {
     entry: Cut,
     exit: Cut,
     label: &'static str,
+    /// Whether hands hold something at the entry and at the exit.
+    holds: [bool; 2],
     /// Before, between or after events of the person.
     between: bool,
     /// Where it leads, seen from the entry: metres aside and ahead, and turn and time scaled to metres.
@@ -72,11 +74,16 @@ impl Piece {
 }
 
 /// The pieces that are kept, by take, person and time.
-pub(super) fn pieces(motions: &[Vec<Motion>], found: &Annotation, options: &AloneOptions) -> Vec<Piece> {
+pub(super) fn pieces(
+    takes: &[TakeFile],
+    motions: &[Vec<Motion>],
+    found: &Annotation,
+    options: &AloneOptions,
+) -> Vec<Piece> {
     let mut all = Vec::new();
     for (take, people) in motions.iter().enumerate() {
         for (person, motion) in people.iter().enumerate() {
-            let maker = Maker { take, person, motion, found, options };
+            let maker = Maker { file: &takes[take], take, person, motion, found, options };
             all.extend(maker.pieces());
         }
     }
@@ -86,6 +93,7 @@ pub(super) fn pieces(motions: &[Vec<Motion>], found: &Annotation, options: &Alon
 }
 
 struct Maker<'a> {
+    file: &'a TakeFile,
     take: usize,
     person: usize,
     motion: &'a Motion,
@@ -154,6 +162,7 @@ impl Maker<'_> {
             person: self.person,
             entry,
             exit,
+            holds: [entry, exit].map(|cut| holds(self.file, self.person, cut.frame)),
             between: self.own_events().next().is_some(),
             label: labels::of_motion(self.phase(entry), self.phase(exit), turned.abs() > self.options.turn, acts),
             leads: [way.x, way.y, 0.5 * turned, 0.5 * time],
@@ -169,13 +178,13 @@ impl Maker<'_> {
     }
 }
 
-/// At most `most` pieces, taken in turn from all pairs of entry and exit group: of each pair first the most typical,
-/// then always the one that differs most from those taken. What people do between two events (dancers keep their arms up)
+/// At most `most` pieces, taken in turn from all pairs of entry and exit group, with and without something in the hands: of
+/// each pair first the most typical, then always the one that differs most from those taken. What people do between two events (dancers keep their arms up)
 /// serves only where nobody who is alone leads from the one group to the other.
 fn choose(all: Vec<Piece>, most: usize) -> Vec<Piece> {
-    let mut ways: BTreeMap<(usize, usize), Vec<Piece>> = BTreeMap::new();
+    let mut ways: BTreeMap<(usize, usize, [bool; 2]), Vec<Piece>> = BTreeMap::new();
     for piece in all {
-        ways.entry((piece.entry.group, piece.exit.group)).or_default().push(piece);
+        ways.entry((piece.entry.group, piece.exit.group, piece.holds)).or_default().push(piece);
     }
     for own in ways.values_mut().filter(|own| own.iter().any(|p| !p.between)) {
         own.retain(|p| !p.between);

@@ -3,11 +3,11 @@
 
 use glam::{Quat, Vec2, Vec3};
 
-use super::clip::Cut;
+use super::clip::{Cut, Grasp};
 use super::story::{Clip, Moment, Role, bad};
 use crate::Result;
 use crate::geom::{Ground, wrap_angle};
-use crate::motion::{FPS, JOINT_COUNT, Motion, Plant, fade};
+use crate::motion::{FPS, JOINT_COUNT, Motion, MotionPath, Plant, fade};
 
 /// Frames over which a difference is faded on either side of a joint.
 const WINDOW: usize = 10;
@@ -20,6 +20,8 @@ pub(super) struct Chain {
     pub exit: String,
     /// Frame at which each part begins, and the last frame.
     pub parts: Vec<usize>,
+    /// The boxes in the hands or under the hips, in order of time.
+    pub grasps: Vec<Grasp>,
     names: Vec<String>,
 }
 
@@ -40,17 +42,35 @@ impl Chain {
         }
         let mut motion = moved(&cuts[role.plays[0]].motion, Ground::IDENTITY);
         let mut parts = vec![0, motion.len() - 1];
+        let mut grasps = cuts[role.plays[0]].grasps.clone();
         for &clip in &role.plays[1..] {
+            let joint = motion.len() - 1;
+            join_grasps(&mut grasps, &cuts[clip].grasps, joint).map_err(|found| {
+                let what = format!("where {} begins", clips[clip].name);
+                bad(role.line, format!("role {}: expected the same box in the hands {what}, found {found}", role.name))
+            })?;
             motion = join(motion, &cuts[clip].motion, parts[parts.len() - 2]);
             parts.push(motion.len() - 1);
         }
         Ok(Self {
             motion,
             parts,
+            grasps,
             entry: cuts[role.plays[0]].entry.clone(),
             exit: cuts[*role.plays.last().expect("roles play something")].exit.clone(),
             names: role.plays.iter().map(|&clip| clips[clip].name.clone()).collect(),
         })
+    }
+
+    /// What lies there for some frames, as if it were somebody standing.
+    pub fn still(name: &str, frames: usize) -> Self {
+        let motion = Motion {
+            path: MotionPath { points: vec![Vec2::ZERO; frames], headings: vec![0.0; frames] },
+            ..Motion::default()
+        };
+        let parts = vec![0, frames - 1];
+        let (entry, exit) = (String::new(), String::new());
+        Self { motion, entry, exit, parts, grasps: vec![], names: vec![format!("the rest of {name}")] }
     }
 
     /// First and last frame of what a moment speaks of.
@@ -84,6 +104,25 @@ impl Chain {
         let part = self.parts[1..].iter().position(|&end| frame < end).unwrap_or(self.names.len() - 1);
         format!("{:.2} s of {}", (frame - self.parts[part]) as f32 / FPS, self.names[part])
     }
+}
+
+/// Adds the grasps of a clip that begins at frame `joint`; what is in the hands there goes on.
+fn join_grasps(grasps: &mut Vec<Grasp>, next: &[Grasp], joint: usize) -> std::result::Result<(), &'static str> {
+    let mut next: Vec<Grasp> = next.iter().map(|g| Grasp { span: g.span.map(|f| f + joint), ..g.clone() }).collect();
+    let before = grasps.iter_mut().find(|g| !g.whole[1] && g.span[1] == joint);
+    let after = next.iter().position(|g| !g.whole[0] && g.span[0] == joint);
+    match (before, after) {
+        (None, None) => {}
+        (Some(before), Some(i)) if before.is_like(&next[i]) => {
+            let after = next.remove(i);
+            (before.span[1], before.whole[1], before.source) = (after.span[1], after.whole[1], after.source);
+        }
+        (Some(_), Some(_)) => return Err("another"),
+        (Some(_), None) => return Err("none, and one before"),
+        (None, Some(_)) => return Err("one, and none before"),
+    }
+    grasps.append(&mut next);
+    Ok(())
 }
 
 /// The motion, begun at `start`.

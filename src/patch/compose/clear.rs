@@ -2,9 +2,9 @@
 
 use super::story::{Composition, bad};
 use crate::Result;
-use crate::geom::Capsule;
+use crate::geom::{Capsule, Cuboid};
 use crate::motion::{FPS, body_capsules};
-use crate::patch::{Contact, Fragment};
+use crate::patch::{Contact, Fragment, PatchKind, PatchProp};
 
 /// Bodies may be this deep in each other, metres.
 const DEPTH: f32 = 0.01;
@@ -39,6 +39,31 @@ pub(super) fn check(story: &Composition, contacts: &[Contact], fragments: &[Frag
     let found =
         format!("found {} {deep:.2} m deep in {} at {:.2} s of the patch", names[1], names[0], tick as f32 / FPS);
     Err(bad(story.roles[b].line, format!("expected people beside each other, {found}")))
+}
+
+/// Tests all bodies against the boxes that others have to do with. O(people x boxes x frames).
+///
+/// # Errors
+/// The deepest overlap: who, when, how deep.
+pub(super) fn check_boxes(story: &Composition, kind: &PatchKind) -> Result<()> {
+    let mut worst: Option<(f32, usize, u32, &str)> = None;
+    for (role, fragment) in kind.fragments.iter().enumerate() {
+        let shapes = shapes(fragment);
+        let stranger = |p: &&PatchProp| p.holds.iter().chain(&p.sat).all(|h| h.role as usize != role);
+        for prop in kind.props.iter().filter(stranger) {
+            for (tick, body) in (fragment.begin..).zip(&shapes) {
+                let Some(cuboid) = prop.place(kind, tick).map(|at| Cuboid::new(at, prop.size)) else { continue };
+                let deep = body.iter().map(|c| cuboid.penetration(c)).fold(0.0, f32::max);
+                if deep > worst.map_or(DEPTH, |w| w.0) {
+                    worst = Some((deep, role, tick, &prop.name));
+                }
+            }
+        }
+    }
+    let Some((deep, role, tick, prop)) = worst else { return Ok(()) };
+    let role = &story.roles[role];
+    let found = format!("found {} {deep:.2} m deep in {prop} at {:.2} s of the patch", role.name, tick as f32 / FPS);
+    Err(bad(role.line, format!("expected people beside others' boxes, {found}")))
 }
 
 fn allowed(contacts: &[Contact], a: usize, b: usize, tick: u32) -> f32 {

@@ -17,6 +17,37 @@ pub(super) struct Cut {
     pub motion: Motion,
     pub entry: String,
     pub exit: String,
+    /// The boxes in the hands or under the hips, in order of time.
+    pub grasps: Vec<Grasp>,
+}
+
+/// A time over which somebody holds a box, or sits on one.
+#[derive(Clone, Debug)]
+pub(super) struct Grasp {
+    pub sits: bool,
+    pub size: [f32; 3],
+    pub grip: [f32; 2],
+    /// How far ahead of a sitter's hips the middle of the box is, metres.
+    pub seat: f32,
+    /// First and last frame.
+    pub span: [usize; 2],
+    /// Whether it begins and ends there; else it is cut off.
+    pub whole: [bool; 2],
+    /// Which take's which prop it is, and the take's frames at which it begins and ends.
+    pub source: ([usize; 2], [usize; 2]),
+}
+
+/// Boxes of clips may differ by this much, metres.
+const ALIKE: f32 = 0.005;
+
+impl Grasp {
+    /// True if the box may be the same, and is held or sat on as well.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let near = |(a, b): (&f32, &f32)| (a - b).abs() <= ALIKE;
+        self.sits == other.sits
+            && self.size.iter().zip(&other.size).all(near)
+            && self.grip.iter().zip(&other.grip).all(near)
+    }
 }
 
 /// Cuts a clip out of its take. Its ends are the ports nearest to what is asked for.
@@ -44,11 +75,9 @@ pub(super) fn cut(clip: &Clip, sources: &[Source]) -> Result<Cut> {
         let expected = format!("expected an end after its begin, within {:.2} s", (motion.len() - 1) as f32 / FPS);
         return Err(bad(clip.line, format!("clip {}: {expected}, found {found}", clip.name)));
     }
-    if holds_prop(&source.take, person, from.time, to.time) {
-        let problem = format!("clip {}: expected empty hands, found a prop in them", clip.name);
-        return Err(bad(clip.line, problem));
-    }
-    Ok(Cut { motion: motion.slice(begin, last), entry: from.pose.clone(), exit: to.pose.clone() })
+    let index = sources.iter().position(|s| std::ptr::eq(s, source)).unwrap_or(0);
+    let grasps = grasps(&source.take, index, person, [begin, last]);
+    Ok(Cut { motion: motion.slice(begin, last), entry: from.pose.clone(), exit: to.pose.clone(), grasps })
 }
 
 type Piecewise<'a> = (&'a Source, usize, Option<f32>, Option<f32>);
@@ -93,7 +122,27 @@ fn port<'a>(clip: &Clip, ports: &[&'a TakePort], time: f32, asked: bool) -> Resu
     }
 }
 
-fn holds_prop(take: &TakeFile, person: usize, from: f32, to: f32) -> bool {
-    let held = take.props.iter().flat_map(|prop| &prop.held);
-    held.into_iter().any(|h| h.person == person && h.begin < to && from < h.end)
+/// The boxes that a person holds or sits on between two frames of the take.
+fn grasps(take: &TakeFile, index: usize, person: usize, [begin, last]: [usize; 2]) -> Vec<Grasp> {
+    let mut all = Vec::new();
+    for (p, prop) in take.props.iter().enumerate() {
+        let uses = prop.held.iter().map(|h| (h, false)).chain(prop.sat.iter().map(|s| (s, true)));
+        for (hold, sits) in uses.filter(|(h, _)| h.person == person) {
+            let [first, end] = [hold.begin, hold.end].map(|t| (t.max(0.0) * FPS).round() as usize);
+            let (from, to) = (first.max(begin), end.min(last));
+            if from < to {
+                all.push(Grasp {
+                    sits,
+                    size: prop.size,
+                    grip: prop.grip,
+                    seat: prop.seat,
+                    span: [from - begin, to - begin],
+                    whole: [first > begin, end < last],
+                    source: ([index, p], [first, end]),
+                });
+            }
+        }
+    }
+    all.sort_by_key(|g| g.span);
+    all
 }

@@ -30,6 +30,7 @@
 //! | `roles` | `name`, `plays`, and `start = { x, z, heading_deg, time }` for who is to begin somewhere |
 //! | `places` | where `who` stands `seen_from` another: metres `ahead` and to the `left`, turned by `turn_deg` (180: face to face) |
 //! | `touches` | `a` and `b` (`"ann.right_hand"`), `from` one moment `to` another: hands are led together |
+//! | `props` | a box: `name`, by whom it is `held` or `sat` on, one after the other; `rest` (seconds; 1) where one puts it down and the next takes it up |
 //! | `row` | `roles` of which there are `count`, each beside the one before by `spacing` metres, acting `delay` seconds later |
 //! | `limits` | how far clips may be deformed: `"tight"` (the default) or `"published"` |
 //!
@@ -37,13 +38,17 @@
 //! seconds a place holds all through the clip. Two moments in one place happen at one time.
 //!
 //! Clips are joined at ports of one pose group (`chain`), everybody is placed, and what is still to hold bends paths and
-//! times by the least squares of [`crate::deform::Web`] (`solve`).
+//! times by the least squares of [`crate::deform::Web`] (`solve`). Boxes tie people together as well (`prop`): who passes a
+//! box stands where both have it in their hands, who takes it up where it was put down; while it rests it is solved for as
+//! if it were somebody standing there.
 
 mod chain;
 mod clear;
 mod clip;
 mod hands;
 mod moment;
+mod prop;
+mod prop_text;
 mod retime;
 mod row;
 mod solve;
@@ -58,7 +63,7 @@ use super::{Contact, Fragment, PatchKind, PatchSet, PoseGroup, Touch};
 use crate::{Error, Result};
 
 use chain::Chain;
-use solve::Solved;
+use solve::{Solved, Tie};
 use story::{Composition, Moment};
 
 /// Adds the kinds that compose files (`*.compose.toml`; all in `paths`, and in the folders among them) make of takes to a
@@ -114,7 +119,13 @@ pub fn compose(text: &str, sources: &[Source], groups: &mut Vec<PoseGroup>) -> R
     let story = Composition::parse(text)?;
     let clips = story.clips.iter().map(|c| clip::cut(c, sources)).collect::<Result<Vec<_>>>()?;
     let chains = story.roles.iter().map(|role| Chain::new(role, &story.clips, &clips)).collect::<Result<Vec<_>>>()?;
-    let solved = solve::solve(&story, &chains)?;
+    let people = chains.len();
+    let props = prop::find(&story, &chains)?;
+    let mut ties = solve::ties(&story, &chains)?;
+    let (story, mut chains) = prop::tie(&story, chains, &props, &mut ties)?;
+    let solved = solve::solve(&story, &chains, &ties)?;
+    let core = core(&story, &chains, &solved, &ties, people);
+    chains.truncate(people);
     let mut fragments: Vec<Fragment> = Vec::new();
     for (role, chain) in chains.iter().enumerate() {
         let (motion, begin) = retime::play(&chain.motion, &solved.paths[role], &solved.ticks[role]);
@@ -125,15 +136,17 @@ pub fn compose(text: &str, sources: &[Source], groups: &mut Vec<PoseGroup>) -> R
     let contacts = contacts(&story, &chains, &solved)?;
     hands::lead(&story, &contacts, &mut fragments)?;
     clear::check(&story, &contacts, &fragments)?;
-    Ok(PatchKind {
-        props: Vec::new(),
+    let mut kind = PatchKind {
         name: story.name.clone(),
         labels: story.labels.clone(),
-        core: core(&story, &chains, &solved),
+        core,
         contacts,
         fragments,
-        mirrored: false,
-    })
+        ..PatchKind::default()
+    };
+    kind.props = prop::of_kind(&story, &props, &kind, &solved)?;
+    clear::check_boxes(&story, &kind)?;
+    Ok(kind)
 }
 
 fn contacts(story: &Composition, chains: &[Chain], solved: &Solved) -> Result<Vec<Contact>> {
@@ -157,10 +170,11 @@ fn contacts(story: &Composition, chains: &[Chain], solved: &Solved) -> Result<Ve
 }
 
 /// From the first moment at which anything holds to the last, as long as everybody is there.
-fn core(story: &Composition, chains: &[Chain], solved: &Solved) -> Option<(u32, u32)> {
-    let held = solve::held(story, chains).into_iter().map(|(role, frame)| solved.tick(role, frame));
-    let (first, last) = held.fold((u32::MAX, 0), |(first, last), tick| (first.min(tick), last.max(tick)));
-    let spans = (0..chains.len()).map(|role| solved.span(role));
+fn core(story: &Composition, chains: &[Chain], solved: &Solved, ties: &[Tie], people: usize) -> Option<(u32, u32)> {
+    let held = solve::held(story, chains, ties).into_iter().filter(|h| h.0 < people);
+    let ticks = held.map(|(role, frame)| solved.tick(role, frame));
+    let (first, last) = ticks.fold((u32::MAX, 0), |(first, last), tick| (first.min(tick), last.max(tick)));
+    let spans = (0..people).map(|role| solved.span(role));
     let (first, last) = spans.fold((first, last), |(first, last), span| (first.max(span.0), last.min(span.1)));
     (first <= last).then_some((first, last))
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::story::{Composition, Moment, Place, Role, Touches};
+use super::story::{Composition, Moment, Place, Prop, Role, Touches, Use};
 use crate::geom::Ground;
 
 /// What a compose file's `row` says.
@@ -45,6 +45,15 @@ pub(super) fn lay_out(story: &Composition, row: &Row) -> Composition {
             from: moved(&t.from),
             to: moved(&t.to),
             line: t.line,
+        }));
+        let used = |p: &&Prop| p.held.iter().chain(&p.sat).all(|u| inside(u.who.role));
+        out.props.extend(story.props.iter().filter(used).map(|p| {
+            let own = |u: &Use| {
+                let span = u.span.as_ref().map(|s| s.each_ref().map(moved));
+                Use { who: moved(&u.who), span, turn: u.turn }
+            };
+            let [held, sat] = [&p.held, &p.sat].map(|all| all.iter().map(own).collect());
+            Prop { name: format!("{}-{}", p.name, copy + 1), held, sat, ..p.clone() }
         }));
         let beside = moment_of(story, row.roles[0]);
         out.places.push(Place {

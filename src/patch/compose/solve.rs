@@ -31,30 +31,49 @@ impl Solved {
     }
 }
 
-/// Solves a composition.
+/// What ties two people together at a moment, or over a time.
+pub(super) struct Tie {
+    pub bonds: Vec<Bond>,
+    /// What it demands, for messages: `'bob' cannot be there`.
+    pub what: String,
+    pub line: usize,
+}
+
+/// What the places of a composition tie together.
 ///
 /// # Errors
-/// Moments that do not exist; somebody of whom nothing says where they are; places that contradict each other or cannot
-/// hold within the limits: the first, in the order of the file, with which they no longer do.
-pub(super) fn solve(story: &Composition, chains: &[Chain]) -> Result<Solved> {
-    let bonds = story.places.iter().map(|place| bonds(place, chains)).collect::<Result<Vec<_>>>()?;
+/// Moments that do not exist.
+pub(super) fn ties(story: &Composition, chains: &[Chain]) -> Result<Vec<Tie>> {
+    let tie = |place: &Place| {
+        let what = format!("'{}' cannot be there seen from '{}'", place.who.text, place.seen_from.text);
+        Ok(Tie { bonds: bonds(place, chains)?, what, line: place.line })
+    };
+    story.places.iter().map(tie).collect()
+}
+
+/// Solves a composition, whose people are tied together by `ties`.
+///
+/// # Errors
+/// Somebody of whom nothing says where they are; ties that contradict each other or cannot hold within the limits: the
+/// first with which they no longer do.
+pub(super) fn solve(story: &Composition, chains: &[Chain], ties: &[Tie]) -> Result<Solved> {
+    let bonds: Vec<Vec<Bond>> = ties.iter().map(|tie| tie.bonds.clone()).collect();
     let threads = lay(story, chains, &bonds)?;
     let mut solved = attempt(story, &threads, &bonds).map_err(|whole| {
         // Which one is it that cannot hold?
         let failed = (1..bonds.len()).find_map(|n| attempt(story, &threads, &bonds[..n]).err().map(|f| (n - 1, f)));
         let (index, failure) = failed.unwrap_or((bonds.len().saturating_sub(1), whole));
-        failure.told(story, chains, story.places.get(index))
+        failure.told(story, chains, ties.get(index))
     })?;
     let first = solved.ticks.iter().map(|t| t[0]).fold(f32::INFINITY, f32::min).round();
     solved.ticks.iter_mut().flatten().for_each(|t| *t -= first);
     Ok(Solved { paths: solved.paths, ticks: solved.ticks })
 }
 
-/// The roles and frames at which anything holds: the ends of all places and touches.
-pub(super) fn held(story: &Composition, chains: &[Chain]) -> Vec<(usize, usize)> {
-    let places = story.places.iter().filter_map(|place| bonds(place, chains).ok());
-    let mut held: Vec<(usize, usize)> =
-        places.flat_map(|b| [b[0].a, b[0].b, b[b.len() - 1].a, b[b.len() - 1].b]).collect();
+/// The roles and frames at which anything holds: the ends of all ties and touches.
+pub(super) fn held(story: &Composition, chains: &[Chain], ties: &[Tie]) -> Vec<(usize, usize)> {
+    let ends = |b: &Vec<Bond>| [b[0].a, b[0].b, b[b.len() - 1].a, b[b.len() - 1].b];
+    let mut held: Vec<(usize, usize)> = ties.iter().flat_map(|tie| ends(&tie.bonds)).collect();
     let moments = story.touches.iter().flat_map(|t| [(&t.from, t.line), (&t.to, t.line)]);
     held.extend(moments.filter_map(|(m, line)| Some((m.role, chains[m.role].frame(m, line).ok()?))));
     held
@@ -142,17 +161,19 @@ enum Failure {
 }
 
 impl Failure {
-    fn told(self, story: &Composition, chains: &[Chain], place: Option<&Place>) -> Error {
-        let Some(place) = place else { return bad(1, "expected people who can be where they start".into()) };
-        let what = format!("'{}' cannot be there seen from '{}'", place.who.text, place.seen_from.text);
+    fn told(self, story: &Composition, chains: &[Chain], tie: Option<&Tie>) -> Error {
+        let Some(Tie { what, line, .. }) = tie else {
+            return bad(1, "expected people who can be where they start".into());
+        };
+        let line = *line;
         match self {
-            Self::Contradiction => bad(place.line, format!("{what}: it contradicts what was said before")),
-            Self::TooFar => bad(place.line, format!("{what}: that is too far from what else holds")),
+            Self::Contradiction => bad(line, format!("{what}: it contradicts what was said before")),
+            Self::TooFar => bad(line, format!("{what}: that is too far from what else holds")),
             Self::Broken(b) => {
                 let (name, when) = (&story.roles[b.at.role].name, chains[b.at.role].name(b.at.frame));
                 let found = format!("{:.3} {} per frame", b.found, b.unit);
                 let limit = format!("(limit {:.3} {})", b.limit, b.unit);
-                bad(place.line, format!("{what}: {name} would have to {} by {found} {limit} at {when}", b.measure))
+                bad(line, format!("{what}: {name} would have to {} by {found} {limit} at {when}", b.measure))
             }
         }
     }

@@ -15,6 +15,7 @@ pub(super) struct Composition {
     pub roles: Vec<Role>,
     pub places: Vec<Place>,
     pub touches: Vec<Touches>,
+    pub props: Vec<Prop>,
 }
 
 /// A piece of a take.
@@ -75,6 +76,30 @@ pub(super) struct Touches {
     pub from: Moment,
     pub to: Moment,
     pub line: usize,
+}
+
+/// A box, and who has it in the hands or sits on it, one after the other.
+#[derive(Clone, Debug)]
+pub(super) struct Prop {
+    pub name: String,
+    /// Full extents and grip, where the clips do not say them.
+    pub size: Option<[f32; 3]>,
+    pub grip: Option<[f32; 2]>,
+    pub held: Vec<Use>,
+    pub sat: Vec<Use>,
+    /// Seconds for which it rests where one puts it down and the next takes it up.
+    pub rest: f32,
+    pub line: usize,
+}
+
+/// Somebody who holds a box or sits on it.
+#[derive(Clone, Debug)]
+pub(super) struct Use {
+    pub who: Moment,
+    /// From when to when, where the clip does not say it.
+    pub span: Option<[Moment; 2]>,
+    /// How they look against the one before, radians.
+    pub turn: f32,
 }
 
 /// A problem at a line of the file.

@@ -7,6 +7,7 @@ use glam::Vec2;
 use toml::Spanned;
 
 use super::moment::Names;
+use super::prop_text::PropText;
 use super::row::{self, Row};
 use super::story::{Clip, Composition, Piece, Place, Role, Touches, bad};
 use crate::Result;
@@ -35,6 +36,8 @@ struct Text {
     places: Vec<Spanned<PlaceText>>,
     #[serde(default)]
     touches: Vec<Spanned<TouchText>>,
+    #[serde(default)]
+    props: Vec<Spanned<PropText>>,
     #[serde(default)]
     row: Option<Spanned<RowText>>,
 }
@@ -145,9 +148,14 @@ impl Reader<'_> {
         let names = Names { roles: &roles, clips: &clips };
         let places = raw.places.into_iter().map(|p| self.place(p, &names)).collect::<Result<Vec<_>>>()?;
         let touches = raw.touches.into_iter().map(|t| self.touch(t, &names)).collect::<Result<Vec<_>>>()?;
+        let props = raw.props.into_iter().map(|p| {
+            let line = self.line(p.span());
+            p.into_inner().read(line, &names)
+        });
+        let props = props.collect::<Result<Vec<_>>>()?;
         let row = raw.row.map(|row| self.row(row, &names)).transpose()?;
         let (name, labels) = (raw.name.into_inner(), raw.labels);
-        let story = Composition { name, labels, limits, clips, roles, places, touches };
+        let story = Composition { name, labels, limits, clips, roles, places, touches, props };
         Ok(row.map_or_else(|| story.clone(), |row| row::lay_out(&story, &row)))
     }
 

@@ -24,7 +24,7 @@ pub(super) struct Body {
     pub palms: Vec<[Vec3; 2]>,
     /// Eq. 4.
     pub variation: Vec<f32>,
-    /// Largest speed on the ground in the same window, m/s.
+    /// Largest speed on the ground around each frame, m/s, see [`speeds`].
     pub speeds: Vec<f32>,
     capsules: Vec<Capsule>,
 }
@@ -70,7 +70,8 @@ impl Body {
     }
 }
 
-/// Largest speed within `half` frames of each frame; speeds are over five frames.
+/// Largest speed within two half windows of each frame; speeds are over five frames. So who is about to set off counts as
+/// fast, and who has just stopped: first and last steps, on which hips are slow, are no reaction to anybody.
 fn speeds(points: &[Vec2], half: usize) -> Vec<f32> {
     let around = |i: usize, by: usize| (i.saturating_sub(by), (i + by).min(points.len() - 1));
     let speed = |i: usize| {
@@ -79,7 +80,7 @@ fn speeds(points: &[Vec2], half: usize) -> Vec<f32> {
     };
     let local: Vec<f32> = (0..points.len()).map(speed).collect();
     let most = |i: usize| {
-        let (first, last) = around(i, half);
+        let (first, last) = around(i, 2 * half);
         local[first..=last].iter().copied().fold(0.0, f32::max)
     };
     (0..points.len()).map(most).collect()

@@ -25,8 +25,9 @@ const REGIONS: usize = Region::ALL.len();
 /// The smallest gap of every pair of regions.
 type Gaps = [[f32; REGIONS]; REGIONS];
 
-/// The contacts between two people: one sign for every time over which anything of them touches.
-pub(super) fn signs(people: [usize; 2], bodies: [&Body; 2], options: &EpisodeOptions) -> Vec<Sign> {
+/// The contacts between two people: one sign for every time over which anything of them touches; and how near their
+/// surfaces are at every frame.
+pub(super) fn signs(people: [usize; 2], bodies: [&Body; 2], options: &EpisodeOptions) -> (Vec<Sign>, Vec<f32>) {
     let frames = bodies[0].len().min(bodies[1].len());
     let near = |f: &usize| bodies[0].places[*f].distance(bodies[1].places[*f]) < REACH;
     let gaps: Vec<(usize, Gaps)> = (0..frames).filter(near).map(|f| (f, gaps(bodies, f))).collect();
@@ -41,7 +42,9 @@ pub(super) fn signs(people: [usize; 2], bodies: [&Body; 2], options: &EpisodeOpt
             }
         }
     }
-    gather(people, found, options.min_seconds)
+    let mut nearest = vec![FAR; frames];
+    gaps.iter().for_each(|(f, g)| nearest[*f] = g.iter().flatten().copied().fold(FAR, f32::min));
+    (gather(people, found, options.min_seconds), nearest)
 }
 
 fn gaps(bodies: [&Body; 2], frame: usize) -> Gaps {

@@ -13,6 +13,9 @@ mod merge;
 mod options;
 mod report;
 #[cfg(test)]
+mod scripted;
+mod signals;
+#[cfg(test)]
 mod tests;
 mod thresholds;
 mod variation;
@@ -23,6 +26,7 @@ pub use constraints::{Constraints, Placement};
 pub use event::{Event, EventKind, Region, Sign, Touching};
 pub use options::EpisodeOptions;
 pub use report::{Detection, PairReport};
+pub use signals::{PairSignals, PersonSignals, Signals};
 pub use thresholds::Thresholds;
 pub use variation::variation;
 
@@ -49,16 +53,18 @@ pub fn detect_all(takes: &[&[Motion]], options: &EpisodeOptions) -> Vec<Detectio
 
 fn detect_one(bodies: &[Body], thresholds: Thresholds, options: &EpisodeOptions) -> Detection {
     let (mut signs, mut pairs) = (Vec::new(), Vec::new());
+    let mut signals = Signals { people: bodies.iter().map(PersonSignals::of).collect(), pairs: Vec::new() };
     for a in 0..bodies.len() {
         for b in a + 1..bodies.len() {
             let couple = Couple { people: [a, b], bodies: [&bodies[a], &bodies[b]], thresholds: &thresholds, options };
-            let mut own = contact::signs(couple.people, couple.bodies, options);
+            let (mut own, gap) = contact::signs(couple.people, couple.bodies, options);
             own.extend(couple.proximity());
             own.extend(couple.synchronous());
             pairs.push(PairReport::of(&couple, &own));
+            signals.pairs.push(PairSignals::of(&couple, gap));
             signs.extend(own);
         }
     }
     let events = merge::events(signs, bodies, options);
-    Detection { events, pairs, frames: bodies.iter().map(Body::len).collect(), thresholds }
+    Detection { events, pairs, frames: bodies.iter().map(Body::len).collect(), thresholds, signals }
 }

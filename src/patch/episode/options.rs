@@ -21,7 +21,8 @@ pub struct EpisodeOptions {
     pub sight: f32,
     /// Proximity and synchronicity last at least this long, seconds; default 0.2.
     pub min_seconds: f32,
-    /// Events this near in time merge, seconds between end and begin; default 0.5,
+    /// Events this near in time merge, seconds between end and begin; default 0.7 (gestures pause, and
+    /// are seen a little after they begin and before they end),
     pub merge_seconds: f32,
     /// if they have somebody in common or their middles are this near, metres; default 2.
     pub merge_metres: f32,
@@ -38,7 +39,7 @@ impl Default for EpisodeOptions {
             synchronicity: None,
             sight: 10.0,
             min_seconds: 0.2,
-            merge_seconds: 0.5,
+            merge_seconds: 0.7,
             merge_metres: 2.0,
         }
     }

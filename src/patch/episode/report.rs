@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::attention::Couple;
 use super::event::{Event, Sign};
+use super::signals::Signals;
 use super::thresholds::Thresholds;
 
 /// What was found between two people.
@@ -83,6 +84,8 @@ pub struct Detection {
     pub frames: Vec<usize>,
     /// What counted as acting noticeably.
     pub thresholds: Thresholds,
+    /// What events were told by, frame by frame.
+    pub signals: Signals,
 }
 
 impl Detection {

@@ -18,7 +18,6 @@ pub(super) fn scenes() -> Vec<Scene> {
         action("stretch", 66, stretch),
         action("scratch-head", 60, scratch),
         tie_shoe(),
-        sit(),
     ]
 }
 
@@ -103,8 +102,8 @@ fn tie_shoe() -> Scene {
     a.shift(Vec2::new(0.0, -0.13), 0.0, 0.6);
     a.step_from(Right, origin, Ground::new(Vec2::new(-0.02, -0.44), 0.0), 15);
     let kneel = [-0.2, 0.72, 1.75, 2.60];
-    a.pose(kneel, &[(HipsUp, -0.47), (PelvisPitch, 0.22), (SpinePitch, 0.55), (KneeOutLeft, 0.12), (HeadPitch, 0.05)]);
-    a.pulse(HeelUpRight, [0.0, 0.72, 1.55, 2.15], 0.95);
+    a.pose(kneel, &[(HipsUp, -0.45), (PelvisPitch, 0.22), (SpinePitch, 0.55), (KneeOutLeft, 0.12), (HeadPitch, 0.05)]);
+    a.pulse(HeelUpRight, [0.0, 0.72, 1.55, 2.15], 1.0);
     for (side, s) in [(Left, 1.0), (Right, -1.0)] {
         let at = |x: f32, y: f32| {
             grip(Relative::World, [0.105 + s * x, y, 0.10], [s * -0.5, -0.75, 0.45], [s * -0.9, -0.3, 0.0])
@@ -129,30 +128,4 @@ fn tie_shoe() -> Scene {
     let to = a.now;
     a.stand(20);
     solo("tie-shoe", a, &[("tie-shoe", &["action", "in_place"], from, to)])
-}
-
-/// Sits down on the ground behind the feet, a hand for support, and gets up again.
-fn sit() -> Scene {
-    let mut a = Actor::standing();
-    a.stand(20);
-    let from = a.now;
-    let (down, up) = (1.55, 3.2);
-    a.pose([0.05, down, up, up + 1.6], &[(HipsUp, -0.80), (HipsForward, -0.44)]);
-    // Lean forward while the hips are behind the feet, then sit back.
-    a.pose([0.0, 0.75, 0.85, down + 0.25], &[(PelvisPitch, 0.45), (SpinePitch, 0.50)]);
-    a.pose([up - 0.2, up + 0.55, up + 0.75, up + 1.6], &[(PelvisPitch, 0.55), (SpinePitch, 0.55)]);
-    a.pose(
-        [down - 0.4, down + 0.3, up - 0.2, up + 0.5],
-        &[(PelvisPitch, -0.30), (SpinePitch, 0.50), (KneeOutLeft, 0.15), (KneeOutRight, 0.15)],
-    );
-    let ground = grip(Relative::World, [-0.36, 0.05, -0.52], [-0.5, -0.25, -0.8], [0.0, -1.0, 0.1]);
-    let knee = |s: f32| grip(Relative::World, [s * 0.13, 0.475, -0.15], [s * -0.25, -0.45, 0.9], [0.0, -0.9, -0.45]);
-    let right =
-        vec![(0.4, ground), (down + 0.1, ground), (down + 0.75, knee(-1.0)), (up - 0.5, knee(-1.0)), (up, ground)];
-    a.reach(Right, [0.35, 1.1, up + 0.45, up + 1.25], right);
-    a.reach(Left, [0.3, 1.0, up - 0.4, up + 0.35], vec![(0.5, knee(1.0))]);
-    a.stand(30 * 5);
-    let to = a.now;
-    a.stand(20);
-    solo("sit", a, &[("sit", &["action", "in_place", "sit"], from, to)])
 }

@@ -125,8 +125,10 @@ fn hug(scene: &mut Scene, t: f32) -> f32 {
             grip(Path, palm, [0.8 - 0.8 * open, -0.5 + 0.6 * open, 0.1 + 0.9 * open], [0.5 * open, -0.4, -1.0 + open])
         };
         let under = |open: f32| {
-            let palm = [side + 0.165 + 0.20 * open, 1.19 + 0.02 * open, HUG + 0.14 - 0.21 * open];
-            grip(Path, palm, [-1.0 + open, 0.1, 0.1 + 0.9 * open], [-0.5 * open, 0.0, -1.0 + open])
+            let palm = [side + 0.17 + 0.195 * open, 1.19 + 0.02 * open, HUG + 0.145 - 0.215 * open];
+            // Flat on the other's back where it turns into the flank.
+            let shut = 1.0 - open;
+            grip(Path, palm, [-0.75 * shut, 0.1, 0.6 + 0.4 * open], [-0.5 - 0.1 * shut, 0.0, -0.8 * shut])
         };
         let times = [t, t + 0.5, release, release + 0.6];
         let above = grip(Path, [side - 0.18, 1.56, HUG - 0.02], [0.3, 0.0, 1.0], [0.4, -1.0, 0.0]);

@@ -35,7 +35,7 @@ fn low(side: Foot, wide: f32) -> Grip {
 fn squat(a: &mut Actor, t: f32) {
     let times = [t - DOWN, t - 0.05, t + 0.1, t + UP];
     a.pose(times, &[(HipsUp, -0.48), (HipsForward, -0.16), (KneeOutLeft, 0.3), (KneeOutRight, 0.3)]);
-    a.pose(times, &[(PelvisPitch, 0.55), (SpinePitch, 0.62), (HeadPitch, -0.1), (HeelUpLeft, 0.2), (HeelUpRight, 0.2)]);
+    a.pose(times, &[(PelvisPitch, 0.50), (SpinePitch, 0.67), (HeadPitch, -0.1), (HeelUpLeft, 0.2), (HeelUpRight, 0.2)]);
     a.look([t - DOWN - 0.2, t - 0.5, t + 0.2, t + UP], Sight::Beside(Vec3::new(0.0, 0.15, AHEAD)));
 }
 

@@ -7,6 +7,7 @@ mod lift;
 mod meet;
 mod place;
 mod push;
+mod sit;
 mod talk;
 mod trio;
 mod walks;
@@ -22,6 +23,7 @@ pub(super) fn scenes() -> Vec<Scene> {
         actions::scenes(),
         carry::scenes(),
         lift::scenes(),
+        sit::scenes(),
         greet::scenes(),
         push::scenes(),
         talk::scenes(),

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::TAKES;
+use crate::motion::limits::excess;
 use crate::motion::{JOINT_COUNT, canonical, joint::*};
 
 #[test]
@@ -41,6 +42,23 @@ fn roots_accelerate_like_people() {
         }
     }
     assert!(worst.0 < 9.0, "{worst:?}");
+}
+
+#[test]
+fn joints_stay_within_their_limits() {
+    let mut worst: Vec<(f32, String)> = Vec::new();
+    for (take, _) in TAKES.iter() {
+        for clip in &take.clips {
+            for j in 0..JOINT_COUNT {
+                let over = |f: usize| (excess(j, clip.pose(f)[j]).to_degrees(), f);
+                let (most, f) = (0..clip.frames()).map(over).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
+                let place = format!("{} {} at {:.2} s", clip.name, canonical().joints[j].name, f as f32 / 60.0);
+                worst.push((most, place));
+            }
+        }
+    }
+    worst.retain(|w| w.0 > 6.0);
+    assert!(worst.is_empty(), "{worst:#?}");
 }
 
 /// Flexion of a hinge in degrees, negative if it bends the wrong way.

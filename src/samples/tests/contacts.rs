@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::{TAKES, frame};
-use crate::geom::Capsule;
+use crate::geom::{Capsule, Cuboid, Upright};
 use crate::motion::{BODY_CAPSULES, BodyPart, body_capsules, joint::*};
 
 fn palm(globals: &[(Vec3, glam::Quat)], part: BodyPart) -> Vec3 {
@@ -65,6 +65,46 @@ fn boxes_are_between_the_palms() {
             }
         }
     }
+}
+
+#[test]
+fn sitters_are_on_their_crates_and_everybody_else_keeps_clear_of_them() {
+    let mut sitters = 0;
+    for (take, people) in TAKES.iter() {
+        for prop in &take.file.props {
+            let Some(seat) = prop.sat.first() else { continue };
+            let at = |f: usize| people[seat.person][f][HIPS].0;
+            let hips = at(frame(seat.begin));
+            let heading = {
+                // The path looks where the feet do on average.
+                let toes = |j: usize| people[seat.person][frame(seat.begin)][j].1 * Vec3::Z;
+                let ahead = toes(LEFT_FOOT) + toes(RIGHT_FOOT);
+                ahead.x.atan2(ahead.z)
+            };
+            let forward = Vec3::new(heading.sin(), 0.0, heading.cos());
+            let middle = (hips + forward * prop.seat).with_y(0.5 * prop.size[1]);
+            let cuboid = Cuboid::new(Upright { middle, heading }, prop.size);
+            for f in frame(seat.begin)..=frame(seat.end) {
+                let over = at(f).y - 0.13 - prop.size[1];
+                assert!(over.abs() < 0.01, "{} at {f}: {over} m over the crate", take.file.name);
+                assert!(at(f).distance(hips) < 0.01, "{} at {f}: the hips slide", take.file.name);
+            }
+            for (person, frames) in people.iter().enumerate() {
+                let mut worst = (0f32, 0, 0);
+                for (f, globals) in frames.iter().enumerate() {
+                    let mut capsules = Vec::new();
+                    body_capsules(globals, &mut capsules);
+                    for (k, c) in capsules.iter().enumerate() {
+                        let deep = cuboid.penetration(c);
+                        worst = if deep > worst.0 { (deep, f, k) } else { worst };
+                    }
+                }
+                assert!(worst.0 < 0.01, "{} person {person}: {worst:?} (m, frame, capsule)", take.file.name);
+            }
+            sitters += 1;
+        }
+    }
+    assert!(sitters >= 5, "{sitters}");
 }
 
 /// How deep two capsules are in each other (m); negative is the gap.

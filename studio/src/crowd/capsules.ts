@@ -59,18 +59,35 @@ export function rayCapsule(origin: Vec3, direction: Vec3, a: Vec3, b: Vec3, radi
   return Math.min(raySphere(origin, direction, a, radius), raySphere(origin, direction, b, radius));
 }
 
-/** The person whose body the ray meets first at `secs`; null if none. `lift` raises everybody (the loom). */
-export function pickPerson(crowd: Crowd, secs: number, origin: Vec3, direction: Vec3, lift = 0): number | null {
-  const pose = new Pose(crowd.joints.length);
-  const from: Vec3 = [origin[0], origin[1] - lift, origin[2]];
+export interface Capsule {
+  a: Vec3;
+  b: Vec3;
+  radius: number;
+}
+
+/** The capsules of a body in a pose. */
+export function bodyCapsules(crowd: Crowd, pose: Pose): Capsule[] {
+  const at = placing(crowd, pose);
+  return ROWS.map(([a, b, radius]) => ({ a: at(a), b: at(b), radius }));
+}
+
+/** Where ends of capsules are in a pose. */
+function placing(crowd: Crowd, pose: Pose): (end: End) => Vec3 {
   const index = new Map(crowd.joints.map((j, i) => [j.name, i]));
-  let best: number | null = null;
-  let nearest = Number.POSITIVE_INFINITY;
-  const at = ([name, offset]: End): Vec3 => {
+  return ([name, offset]) => {
     const j = index.get(name) ?? 0;
     const [x, y, z] = rotate(pose.rotations.subarray(j * 4, j * 4 + 4), ...offset);
     return [pose.positions[j * 3] + x, pose.positions[j * 3 + 1] + y, pose.positions[j * 3 + 2] + z];
   };
+}
+
+/** The person whose body the ray meets first at `secs`; null if none. `lift` raises everybody (the loom). */
+export function pickPerson(crowd: Crowd, secs: number, origin: Vec3, direction: Vec3, lift = 0): number | null {
+  const pose = new Pose(crowd.joints.length);
+  const from: Vec3 = [origin[0], origin[1] - lift, origin[2]];
+  const at = placing(crowd, pose);
+  let best: number | null = null;
+  let nearest = Number.POSITIVE_INFINITY;
   for (let person = 0; person < crowd.characters.length; person++) {
     if (!samplePose(crowd, person, secs, pose)) continue;
     const hips = pose.positions.subarray(0, 3) as unknown as Vec3;

@@ -2,6 +2,7 @@
 
 import { roleColor } from "../draw/palette";
 import { clockText, type Player } from "../play/player";
+import { measuresOf } from "../set/measure";
 import type { Contact, PatchSet, SetKind } from "../set/model";
 import type { Store } from "../store";
 import { button, el } from "./dom";
@@ -29,7 +30,7 @@ export function installKind(
         "roles",
         kind.roles.map((_, role) => ports(set, kind, role)),
       ),
-      ...together(kind, secs),
+      facts(set, kind, secs),
       ...(kind.contacts.length > 0
         ? [
             el(
@@ -55,12 +56,27 @@ function ports(set: PatchSet, kind: SetKind, role: number): HTMLElement {
   ]);
 }
 
-function together({ core, mirrored }: SetKind, secs: (frame: number) => string): HTMLElement[] {
+function facts(set: PatchSet, kind: SetKind, secs: (frame: number) => string): HTMLElement {
+  const { core, mirrored } = kind;
   const rows: [string, string][] = core ? [["Together", `${secs(core[0])}–${secs(core[1])} s`]] : [];
   if (mirrored) rows.push(["Mirrored", "a copy seen in a mirror"]);
-  if (rows.length === 0) return [];
-  const cells = rows.flatMap(([name, value]) => [el("dt", "", [name]), el("dd", "", [value])]);
-  return [el("dl", "facts", cells)];
+  const { speed, fastest, radius, turnDeg, words } = measuresOf(set, kind);
+  rows.push(
+    ["Measured", words.join(", ")],
+    ["Speed", `${speed.toFixed(1)} m/s, at most ${fastest.toFixed(1)}`],
+    ["Turn", turned(turnDeg)],
+    ["Radius", `${radius.toFixed(1)} m`],
+  );
+  return el(
+    "dl",
+    "facts",
+    rows.flatMap(([name, value]) => [el("dt", "", [name]), el("dd", "", [value])]),
+  );
+}
+
+function turned(degrees: number): string {
+  const whole = Math.round(degrees);
+  return whole === 0 ? "none" : `${Math.abs(whole)}° to the ${whole > 0 ? "left" : "right"}`;
 }
 
 function touch(set: PatchSet, { a, b, begin }: Contact, player: Player): HTMLElement {

@@ -7,7 +7,7 @@ import { MANY, type Store } from "../store";
 import { button, choice, el } from "./dom";
 
 export function installKinds(parent: HTMLElement, store: Store, set: PatchSet): void {
-  const search = el("input", "search", [], { type: "search", placeholder: "Name, label or pose group" });
+  const search = el("input", "search", [], { type: "search", placeholder: "Name, label, pose group, activity" });
   search.addEventListener("input", () => store.set("filter", { ...store.get("filter"), words: search.value }));
   const people = choice<string>(
     "People",

@@ -27,14 +27,27 @@ function lifetime({ holds, before, after }: SetProp, kind: SetKind): [begin: num
 
 function placeOf(prop: SetProp, frame: number, crowd: Crowd, centre: Vec2): Place {
   const hold = prop.holds.find((h) => h.begin <= frame && frame <= h.end);
-  const rest = frame < prop.holds[0].begin ? prop.before : prop.after;
-  if (!hold) {
-    const [x, y, z] = rest?.middle ?? [centre[0], 0, centre[1]];
-    return [x - centre[0], y, z - centre[1], rest?.heading ?? 0];
+  if (hold) return inHands(prop, hold.role, frame, crowd);
+  const done = prop.holds.filter((h) => h.end < frame);
+  if (done.length > 0 && done.length < prop.holds.length) {
+    const last = done[done.length - 1];
+    return settled(inHands(prop, last.role, last.end, crowd), prop.size[1]);
   }
+  const rest = done.length === 0 ? prop.before : prop.after;
+  const [x, y, z] = rest?.middle ?? [centre[0], 0, centre[1]];
+  return [x - centre[0], y, z - centre[1], rest?.heading ?? 0];
+}
+
+function inHands(prop: SetProp, role: number, frame: number, crowd: Crowd): Place {
   const pose = new Pose(crowd.joints.length);
-  samplePose(crowd, hold.role, inside(crowd, hold.role, frame), pose);
+  samplePose(crowd, role, inside(crowd, role, frame), pose);
   return between(partOf(crowd, pose, "left_hand"), partOf(crowd, pose, "right_hand"), prop.grip);
+}
+
+/** On the ground where it all but is; as src/patch/prop.rs has it. */
+function settled([x, y, z, heading]: Place, height: number): Place {
+  const nearly = 0.08;
+  return [x, y < height / 2 + nearly ? height / 2 : y, z, heading];
 }
 
 /** Seconds of a frame, kept inside a person's life where rounding would put it a hair outside. */

@@ -1,6 +1,7 @@
 /** Which kinds are listed, and which comes next. */
 
 import { type Filter, MANY, type Store } from "../store";
+import { measuresOf } from "./measure";
 import type { PatchSet } from "./model";
 
 /** Indices of the kinds that a filter lets through: people alone first, then by their number, as in the set. */
@@ -13,7 +14,8 @@ export function listed(set: PatchSet, { words, people, mirrored }: Filter): numb
     if (people > 0 && (people === MANY ? count < MANY : count !== people)) return false;
     const groups = kind.roles.flatMap((r) => [set.groups[r.entry], set.groups[r.exit]]);
     const text = [kind.name, ...kind.labels, ...groups].join(" ").toLowerCase();
-    return wanted.every((word) => text.includes(word));
+    const does = (word: string) => measuresOf(set, kind).words.includes(word);
+    return wanted.every((word) => text.includes(word) || does(word));
   };
   const all = set.kinds.map((_, index) => index).filter(fits);
   return all.sort((a, b) => set.kinds[a].roles.length - set.kinds[b].roles.length || a - b);

@@ -36,14 +36,14 @@ export interface Upright {
   heading: number;
 }
 
-/** A box that people hold in both hands; see src/patch/prop.rs. */
+/** A box that people hold in both hands or sit on; see src/patch/prop.rs. */
 export interface SetProp {
   name: string;
   /** Full extents: width between the hands, height, depth. */
   size: Vec3;
   /** Where its middle is, seen from the middle between the palms: up, and ahead of the person. */
   grip: readonly [up: number, ahead: number];
-  /** Who holds it from frame to frame of the kind's clock, both included; in order, without gaps, at least one. */
+  /** Who holds it from frame to frame of the kind's clock, both included; in order; none if they only sit on it. */
   holds: { role: number; begin: number; end: number }[];
   /** Where it rests before the first takes it up and after the last put it down. */
   before: Upright | null;

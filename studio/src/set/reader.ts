@@ -99,7 +99,9 @@ function prop(value: unknown, place: string): SetProp {
     const [role, begin, end] = ["role", "begin", "end"].map((key) => count(hold[key], `${place}, hold ${k}, ${key}`));
     return { role, begin, end };
   });
-  if (holds.length === 0) throw new FileProblem(place, "expected somebody to hold it, found nobody");
+  if (holds.length === 0 && !(v.before && v.after)) {
+    throw new FileProblem(place, "expected somebody to hold it, or it to rest all the time; found neither");
+  }
   return {
     name: text(v.name, `${place}, name`),
     size: vector(v.size, 3, `${place}, size`) as Vec3,

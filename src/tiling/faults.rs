@@ -1,0 +1,132 @@
+//! What is wrong with the final bodies: they are tested with their exact capsules, and boxes with them.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use glam::Vec2;
+use rayon::prelude::*;
+
+use super::bake::Chains;
+use super::boxes::in_the_way;
+use super::domain::Domain;
+use super::figure::{Figure, REACH, TOLERANCE, frame_at};
+use super::library::Library;
+use super::occupancy::Piece;
+use super::tracks::TrackId;
+use crate::motion::{JOINT_COUNT, canonical};
+use crate::patch::turn_between;
+use crate::refine::{Body, Performance};
+
+/// Bodies whose hips are further apart than this never touch, metres.
+const TOUCHING_HIPS: f32 = 2.2;
+/// Joints may turn this much faster than in the captures.
+const RUSH: f32 = 1.15;
+
+/// Something wrong with the final bodies: two people or their boxes interpenetrate, or one moves as nobody can.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Fault {
+    /// One person.
+    pub a: TrackId,
+    /// The other; the same one if alone to blame.
+    pub b: TrackId,
+    /// When.
+    pub tick: i32,
+}
+
+/// All faults of the final bodies, each at its first tick. O(ticks x people x neighbours), in parallel.
+pub(super) fn faults(chains: Chains, played: &Performance) -> Vec<Fault> {
+    let at_tick = |tick| {
+        let mut pairs = in_the_way(chains, played, tick);
+        pairs.extend(touching(chains, &played.bodies, tick));
+        pairs
+    };
+    let per_tick: Vec<Vec<(TrackId, TrackId)>> = (0..chains.domain.horizon).into_par_iter().map(at_tick).collect();
+    let mut open: BTreeSet<(TrackId, TrackId)> = BTreeSet::new();
+    let mut faults = Vec::new();
+    for (tick, pairs) in per_tick.into_iter().enumerate() {
+        let now: BTreeSet<_> = pairs.into_iter().collect();
+        faults.extend(now.difference(&open).map(|&(a, b)| Fault { a, b, tick: tick as i32 }));
+        open = now;
+    }
+    let alone = |(t, body): (TrackId, &Body)| {
+        let frame = first_unclean(body, chains, 0..body.root.len())?;
+        Some(Fault { a: t, b: t, tick: body.begin as i32 + frame as i32 })
+    };
+    faults.par_extend(played.bodies.par_iter().enumerate().filter_map(alone));
+    faults
+}
+
+/// The first of some frames on which a leg cannot do what it should, a joint turns or the hips move faster than in the
+/// captures (with some allowance), or a limb is in a wall.
+pub(super) fn first_unclean(body: &Body, chains: Chains, mut frames: Range<usize>) -> Option<usize> {
+    frames.find(|&f| {
+        body.strained.binary_search(&f).is_ok()
+            || is_rushed(body, chains.library, f, RUSH)
+            || is_in_wall(body, chains.domain, f)
+    })
+}
+
+fn is_in_wall(body: &Body, domain: &Domain, frame: usize) -> bool {
+    let root = body.root[frame];
+    !domain.holds(Vec2::new(root.x, root.z), REACH)
+        && Figure::of(body, canonical(), (body.begin as usize + frame) as i32).is_some_and(|f| f.is_in_wall(domain))
+}
+
+/// True if from the frame before a joint turns or the hips move `rush` times faster than in the captures.
+pub(super) fn is_rushed(body: &Body, library: &Library, frame: usize, rush: f32) -> bool {
+    let Some(last) = frame.checked_sub(1) else { return false };
+    let longest_step = rush * library.fastest_step + library.limits.stretch;
+    let (before, now) = (body.pose(last), body.pose(frame));
+    body.root[frame].distance(body.root[last]) > longest_step
+        || (0..JOINT_COUNT).any(|j| turn_between(before[j], now[j]) > rush * library.fastest[j])
+}
+
+/// Who is in whom at a tick. Bodies are sorted along x so that near ones are neighbours.
+fn touching(chains: Chains, bodies: &[Body], tick: i32) -> Vec<(TrackId, TrackId)> {
+    let place = |t: TrackId| frame_at(&bodies[t], tick).map(|f| Vec2::new(bodies[t].root[f].x, bodies[t].root[f].z));
+    let mut present: Vec<(Vec2, TrackId)> = (0..bodies.len()).filter_map(|t| Some((place(t)?, t))).collect();
+    present.sort_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.1.cmp(&b.1)));
+    let figures: Vec<Figure> =
+        present.iter().map(|&(_, t)| Figure::of(&bodies[t], canonical(), tick).expect("it is there")).collect();
+    let mut pairs = Vec::new();
+    for (i, &(here, a)) in present.iter().enumerate() {
+        let reached = present[i + 1..].iter().take_while(|(there, _)| there.x - here.x <= TOUCHING_HIPS);
+        for (figure, &(_, b)) in figures[i + 1..].iter().zip(reached) {
+            let depth = figures[i].depth_into(figure);
+            if depth > TOLERANCE && depth > TOLERANCE + captured_depth(chains, (a, b), tick) {
+                pairs.push((a.min(b), a.max(b)));
+            }
+        }
+    }
+    pairs
+}
+
+/// How deep two people who are in one patch at a tick are in each other in its capture at that moment, metres; 0 if they
+/// are in two. Between two captured frames the deeper of them.
+fn captured_depth(chains: Chains, (a, b): (TrackId, TrackId), tick: i32) -> f32 {
+    let (Some(a), Some(b)) = (chains.piece_at(a, tick), chains.piece_at(b, tick)) else { return 0.0 };
+    if a.instance != b.instance {
+        return 0.0;
+    }
+    let clocks = [a, b].map(|piece| clock(chains, piece, tick));
+    let (first, last) = (clocks[0].min(clocks[1]).floor() as u32, clocks[0].max(clocks[1]).ceil() as u32);
+    (first..=last).map(|c| captured(chains, a, c).depth_into(&captured(chains, b, c))).fold(0.0, f32::max)
+}
+
+/// Frame (with fraction) of the patch's clock that a piece shows at a tick.
+fn clock(chains: Chains, piece: &Piece, tick: i32) -> f32 {
+    const HAIR: f32 = 1e-4;
+    let fragment = chains.fragment(piece);
+    let shown = (tick - piece.begin) as f32 / (piece.end - piece.begin) as f32;
+    let at = fragment.begin as f32 + shown * (fragment.motion.len() - 1) as f32;
+    if (at - at.round()).abs() < HAIR { at.round() } else { at }
+}
+
+/// What was captured of a piece's person at a frame of the patch's clock, or at its end nearest to it.
+fn captured(chains: Chains, piece: &Piece, clock: u32) -> Figure {
+    let fragment = chains.fragment(piece);
+    let mut globals = Vec::new();
+    let frame = (clock.saturating_sub(fragment.begin) as usize).min(fragment.motion.len() - 1);
+    fragment.motion.globals(frame, &mut globals);
+    Figure::new(&globals)
+}

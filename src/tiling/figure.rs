@@ -1,0 +1,80 @@
+//! A final body at one moment, as it is tested: its capsules, and the disc on the ground that covers them.
+
+use glam::{Quat, Vec2, Vec3};
+
+use super::domain::Domain;
+use crate::geom::Capsule;
+use crate::motion::{Skeleton, body_capsules};
+use crate::refine::Body;
+
+/// No body reaches further from its hips than this, metres.
+pub(super) const REACH: f32 = 1.1;
+/// Interpenetration that is let pass, metres.
+pub(super) const TOLERANCE: f32 = 0.005;
+
+/// A body's shape.
+pub(super) struct Figure {
+    /// What it is made of.
+    pub capsules: Vec<Capsule>,
+    /// Where the hips are.
+    pub center: Vec2,
+    /// Distance from there of the farthest point.
+    pub radius: f32,
+}
+
+impl Figure {
+    /// The body whose joints' global transforms are given.
+    pub fn new(globals: &[(Vec3, Quat)]) -> Self {
+        let mut capsules = Vec::new();
+        body_capsules(globals, &mut capsules);
+        let ground = |v: Vec3| Vec2::new(v.x, v.z);
+        let center = ground(globals[0].0);
+        let reach = |c: &Capsule| ground(c.a).distance(center).max(ground(c.b).distance(center)) + c.radius;
+        let radius = capsules.iter().map(reach).fold(0.0, f32::max);
+        Self { capsules, center, radius }
+    }
+
+    /// A body of the given bones at a tick, if it is there.
+    pub fn of(body: &Body, bones: &Skeleton, tick: i32) -> Option<Self> {
+        let frame = frame_at(body, tick)?;
+        let mut globals = Vec::new();
+        bones.globals(body.root[frame], body.pose(frame), &mut globals);
+        Some(Self::new(&globals))
+    }
+
+    /// The least x that it covers.
+    pub fn left(&self) -> f32 {
+        self.center.x - self.radius
+    }
+
+    /// True if a limb is in a wall.
+    pub fn is_in_wall(&self, domain: &Domain) -> bool {
+        let inside = |p: Vec3, radius: f32| domain.holds(Vec2::new(p.x, p.z), radius - TOLERANCE);
+        // Bones are so short that three discs each are as good as the whole.
+        let free = |c: &Capsule| [0.0, 0.5, 1.0].into_iter().all(|t| inside(c.a.lerp(c.b, t), c.radius));
+        !domain.holds(self.center, self.radius) && !self.capsules.iter().all(free)
+    }
+
+    /// Depth of the deepest pair of capsules, metres; 0 if none touch.
+    pub fn depth_into(&self, other: &Self) -> f32 {
+        if self.center.distance(other.center) >= self.radius + other.radius {
+            return 0.0;
+        }
+        let mut deepest = 0.0f32;
+        for a in &self.capsules {
+            let (middle, half) = ((a.a + a.b) * 0.5, a.a.distance(a.b) * 0.5 + a.radius);
+            for b in &other.capsules {
+                let reach = half + b.a.distance(b.b) * 0.5 + b.radius - deepest;
+                if middle.distance_squared((b.a + b.b) * 0.5) < reach * reach {
+                    deepest = deepest.max(a.penetration(b));
+                }
+            }
+        }
+        deepest
+    }
+}
+
+/// The frame of a body's motion at a tick, if it is there.
+pub(super) fn frame_at(body: &Body, tick: i32) -> Option<usize> {
+    usize::try_from(tick - body.begin as i32).ok().filter(|&f| f < body.root.len())
+}
