@@ -3,7 +3,7 @@
 //! Squares of 8 m, period 10 s, n people in and n out, up to four objects and three standing people.
 
 use crowdquilt::check::world::{PatchReport, check_patch};
-use crowdquilt::world::{Creation, Limits, Method, measure_creation};
+use crowdquilt::world::{Creation, Limits, Method, measure_creation, measure_walk, scenes};
 
 fn main() -> crowdquilt::Result<()> {
     let argument = |n: usize| std::env::args().nth(n).and_then(|n| n.parse::<usize>().ok());
@@ -29,6 +29,10 @@ fn main() -> crowdquilt::Result<()> {
         quantiles("greatest speed, m/s", checked, |r| &r.speed);
         quantiles("least speed, m/s", checked, |r| &r.slowest);
     }
+    let walk = measure_walk(&scenes::street(1)?, 10_000.0, 4, 1)?;
+    let at = |share: f64| walk.frames[((walk.frames.len() - 1) as f64 * share) as usize];
+    println!("\n10 km of street, one patch a frame: {} patches made, {} kept", walk.made, walk.resident);
+    println!("a frame: median {:.2} ms, p99 {:.2} ms, most {:.2} ms", at(0.5), at(0.99), at(1.0));
     Ok(())
 }
 

@@ -281,7 +281,7 @@ impl FramePatch {
         for (port, inward) in ports {
             let line = self.line(port, inward, limits);
             let secs = f64::from(STRAIGHT_SECS);
-            if grown.segment_distance(line.at(line.time - secs), line.at(line.time + secs)) < f64::from(spacing::GAP) {
+            if !grown.clear(line.at(line.time - secs), line.at(line.time + secs), f64::from(spacing::GAP)) {
                 return Some(format!("expected it off the crossings of edge {}, found it on one", port.edge));
             }
         }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{CrowdPatch, FramePatch, Limits, Method, Options, solve};
+use super::{CrowdPatch, FramePatch, Limits, Method, Options, Plan, Stream, solve};
 use crate::Result;
 
 /// Figures of patches of one size.
@@ -55,4 +55,39 @@ pub fn measure_creation(method: Method, walkers: usize, patches: u64) -> Result<
     }
     found.millis.sort_by(f64::total_cmp);
     Ok(found)
+}
+
+/// Figures of a walk through an endless world.
+#[derive(Clone, Debug)]
+pub struct Walk {
+    /// Milliseconds of every frame in which patches were made, ascending.
+    pub frames: Vec<f64>,
+    /// Most patches there were at a time.
+    pub resident: usize,
+    /// Patches made.
+    pub made: usize,
+}
+
+/// Walks `metres` along x through the endless world of `plan`, on one core: patches within `reach` cells of the camera are
+/// made, at most `budget` in a frame, those behind forgotten.
+///
+/// # Errors
+/// As [`Plan::build`].
+pub fn measure_walk(plan: &Plan, metres: f32, reach: i64, budget: usize) -> Result<Walk> {
+    let mut stream = Stream::new(plan.clone())?;
+    let mut walk = Walk { frames: Vec::new(), resident: 0, made: 0 };
+    for column in 0..(metres / plan.side).ceil() as i64 {
+        loop {
+            let begin = Instant::now();
+            let missing = stream.look([column, 1], reach, budget);
+            walk.frames.push(begin.elapsed().as_secs_f64() * 1e3);
+            walk.resident = walk.resident.max(stream.cells().count());
+            if missing == 0 {
+                break;
+            }
+        }
+        walk.made += if column == 0 { stream.cells().count() } else { 2 * reach as usize + 1 };
+    }
+    walk.frames.sort_by(f64::total_cmp);
+    Ok(walk)
 }

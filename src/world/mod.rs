@@ -55,7 +55,7 @@ pub use identity::{Identities, Link, Person};
 pub use kinds::{Flow, PatternType, balance};
 pub use lattice::{Lattice, Sighting};
 pub use limits::Limits;
-pub use measure::{Creation, measure_creation};
+pub use measure::{Creation, Walk, measure_creation, measure_walk};
 pub use patch::{CrowdPatch, Port, Walker};
 pub use path::Path;
 pub use pattern::{Crossing, Pattern, balanced};

@@ -59,7 +59,7 @@ fn split(
 /// The first obstacle on the way.
 fn nearest_blocking(from: DVec2, to: DVec2, obstacles: &[Obstacle]) -> Option<&Obstacle> {
     let along = (to - from).normalize_or(DVec2::X);
-    let hit = |o: &&Obstacle| o.segment_distance(from, to) < 0.0;
+    let hit = |o: &&Obstacle| !o.clear(from, to, 0.0);
     obstacles.iter().filter(hit).min_by(|a, b| a.centre().dot(along).total_cmp(&b.centre().dot(along)))
 }
 

@@ -75,9 +75,6 @@ pub(super) fn convex_problem(points: &[Vec2]) -> Option<String> {
     (!round || area < 1e-6).then(|| "expected a polygon that goes round once and has an area".to_string())
 }
 
-/// Distances beyond this many metres need not be exact.
-const FAR: f64 = 0.3;
-
 /// A convex polygon grown by a radius: what a body's centre stays out of when the radius includes the body's.
 #[derive(Clone, Debug)]
 pub(super) struct Obstacle {
@@ -126,11 +123,25 @@ impl Obstacle {
         (0..n).map(move |i| (self.corners[i], self.corners[if i + 1 < n { i + 1 } else { 0 }]))
     }
 
-    /// Distance of the segment from `a` to `b`, negative or zero if it touches; a lower bound if it is `FAR` away.
+    /// Whether the segment from `a` to `b` stays further away than `distance`.
+    #[inline]
+    pub fn clear(&self, a: DVec2, b: DVec2, distance: f64) -> bool {
+        let far = self.reach + distance;
+        let beyond = self.centre.distance_squared(nearest(self.centre, a, b)) > far * far;
+        beyond || (!self.outward.is_empty() && (self.beside(a, b, distance) || self.segment_distance(a, b) > distance))
+    }
+
+    /// Whether the segment lies on the far side of an edge.
+    fn beside(&self, a: DVec2, b: DVec2, distance: f64) -> bool {
+        let far = self.radius + distance;
+        let sides = self.corners.iter().zip(&self.outward);
+        sides.into_iter().any(|(&corner, &normal)| (a - corner).dot(normal).min((b - corner).dot(normal)) > far)
+    }
+
+    /// Distance of the segment from `a` to `b`, negative or zero if it touches.
     pub fn segment_distance(&self, a: DVec2, b: DVec2) -> f64 {
-        let far = self.centre.distance(nearest(self.centre, a, b)) - self.reach;
-        if far > FAR || self.outward.is_empty() {
-            return far;
+        if self.outward.is_empty() {
+            return self.centre.distance(nearest(self.centre, a, b)) - self.radius;
         }
         let ends = self.core(a).min(self.core(b));
         let corners = self.corners.iter().map(|&c| c.distance(nearest(c, a, b))).fold(ends, f64::min);
@@ -201,6 +212,17 @@ mod tests {
         assert!((bench().segment_distance(DVec2::new(-2.0, 3.0), DVec2::new(5.0, 3.0)) - 0.5).abs() < 1e-6);
         assert!(bench().segment_distance(DVec2::new(1.0, 0.0), DVec2::new(1.0, 4.0)) < 0.0);
         assert!((bench().support(DVec2::X).x - 2.25).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_clear_is_as_far_away_as_that() {
+        for i in 0..400 {
+            let a = DVec2::new(1.0, 2.0) + DVec2::from_angle(f64::from(i)) * 0.005 * f64::from(i);
+            let b = a + DVec2::from_angle(1.7 * f64::from(i)) * 0.3;
+            let distance = bench().segment_distance(a, b);
+            assert!(bench().clear(a, b, distance - 1e-6) || distance <= 0.0);
+            assert!(!bench().clear(a, b, distance + 1e-6));
+        }
     }
 
     #[test]

@@ -92,7 +92,7 @@ impl Ground {
 
     fn off_objects(&self, track: &Track, k: usize) -> bool {
         let (p, q) = (track.knots[k], track.knots[k + 1]);
-        self.obstacles.iter().all(|o| o.segment_distance(p, q) >= SLACK + track.sag(k))
+        self.obstacles.iter().all(|o| o.clear(p, q, SLACK + track.sag(k)))
     }
 
     /// What keeps `track` inside and off objects.
@@ -114,7 +114,7 @@ impl Ground {
     /// What keeps `track` off `obstacle`: every time it comes near, it passes on one side.
     fn pass(&self, track: &Track, obstacle: &Obstacle, found: &mut Vec<Push>) {
         let knots = track.moving_knots();
-        let hit = |k: usize| obstacle.segment_distance(track.knots[k], track.knots[k + 1]) < OBJECT_ROOM;
+        let hit = |k: usize| !obstacle.clear(track.knots[k], track.knots[k + 1], OBJECT_ROOM);
         let mut k = knots.start - 1;
         while k < knots.end {
             let begin = k;

@@ -144,6 +144,8 @@ fn repulsion(gap: f64, away: DVec2) -> DVec2 {
 
 /// Repulsion by an object, from its nearest side.
 fn off(obstacle: &Obstacle, place: DVec2) -> DVec2 {
-    let gap = obstacle.segment_distance(place, place);
-    if gap > VICINITY { DVec2::ZERO } else { repulsion(gap, place - obstacle.centre()) }
+    if obstacle.clear(place, place, VICINITY) {
+        return DVec2::ZERO;
+    }
+    repulsion(obstacle.segment_distance(place, place), place - obstacle.centre())
 }

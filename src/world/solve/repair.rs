@@ -18,6 +18,10 @@ const KICK: f64 = 0.3;
 const REACH: f64 = 7.0;
 /// Cost of a connection that breaks the limits even without other walkers.
 const UNWALKABLE: f64 = 30.0;
+/// Cost of a connection somebody got stuck on.
+const STUCK: f64 = 2.0;
+/// Of so many restarts all but the first keep the curves whose connections stay.
+const AFRESH: u32 = 6;
 /// Noise of costs, growing with every restart.
 const NOISE: f64 = 0.6;
 
@@ -35,11 +39,16 @@ impl Planner {
     pub fn run(&mut self, options: &Options, rng: &mut ChaCha8Rng) -> (Vec<usize>, u32) {
         let mut best = None;
         for restart in 0..=options.restarts {
-            self.connect(NOISE * f64::from(restart.min(3) + 1), rng);
+            if restart % AFRESH == 0 {
+                self.outputs.clear();
+                self.outputs.resize(self.tracks.len(), usize::MAX);
+            }
+            self.connect(NOISE * f64::from((restart / AFRESH).min(3) + 1), rng);
             let bad = self.mend(options, rng);
             if bad.is_empty() {
                 return (bad, restart);
             }
+            bad.iter().for_each(|&j| self.pairing.avoid(j, self.outputs[j], STUCK));
             self.keep_best(bad, &mut best);
         }
         (self.restore(best), options.restarts)
@@ -59,11 +68,10 @@ impl Planner {
         best.bad
     }
 
-    /// Connects all inputs to outputs, avoiding connections that cannot be walked even alone.
+    /// Connects all inputs to outputs, avoiding connections that cannot be walked even alone. Who keeps its output keeps
+    /// its curve.
     fn connect(&mut self, noise: f64, rng: &mut ChaCha8Rng) {
         let mut outputs = Vec::new();
-        self.outputs.clear();
-        self.outputs.resize(self.tracks.len(), usize::MAX);
         for _ in 0..4 {
             self.pairing.assign(noise, rng, &mut outputs);
             let mut again = false;
