@@ -193,9 +193,10 @@ impl Plan {
         for attempt in 0..3 {
             // In the end other ways past the same objects will do.
             let other = || self.furnished(&bare, column, row, mix(place, attempt), false);
-            let frame = if attempt < 2 { other() } else { patch.frame.clone() };
-            let options = Options { restarts: 0, rounds: 4, ..self.options(place, attempt) };
-            let version = vary(patch, &frame, Common::Connections, &Limits::default(), &options);
+            let (frame, common) =
+                if attempt < 2 { (other(), Common::Connections) } else { (patch.frame.clone(), Common::State) };
+            let options = Options { restarts: 0, rounds: 3, ..self.options(place, attempt) };
+            let version = vary(patch, &frame, common, &Limits::default(), &options);
             if let Some(version) = version.ok().filter(super::Solution::ok) {
                 return version.patch;
             }
