@@ -40,7 +40,7 @@ fn a_thousand_patches_of_sixteen_walkers_are_right() {
 }
 
 #[test]
-#[ignore = "a minute"]
+#[ignore = "half a minute"]
 fn ten_thousand_patches_of_sixteen_walkers_are_right() {
     assert_right(16, 10_000..20_000);
 }

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use crowdquilt::check::world::{Placed, check_patch, check_tiles};
-use crowdquilt::world::{Lattice, Limits, PatternType, Person, Plan, Stream, Template, scenes};
+use crowdquilt::world::{Amount, Lattice, Limits, PatternType, Person, Plan, Prototype, Stream, Template, scenes};
 use glam::Vec2;
 
 fn assert_right(plan: &Plan, lattice: &Lattice) -> (f64, usize, usize) {
@@ -121,6 +121,14 @@ fn maps_that_make_no_sense_are_refused_with_the_place() {
     assert!(found.contains("at least one cell"), "{found}");
     let found = fault("ss", street().bordered("moon", PatternType::empty()));
     assert!(found.contains("template \"street\"") && found.contains("\"moon\""), "{found}");
+    let found = fault("s", street().furnished("tree", Prototype::Disc(-1.0), Amount::Number(1, 1)));
+    assert!(found.contains("furnishing \"tree\"") && found.contains("radius above zero"), "{found}");
+    let found = fault("s", street().furnished("tree", Prototype::Disc(0.1), Amount::Density(f32::NAN)));
+    assert!(found.contains("furnishing \"tree\"") && found.contains("density"), "{found}");
+    let found = fault("s", street().gathered("talk", (3, 1_000_000), Amount::Number(1, 1)));
+    assert!(found.contains("gathering \"talk\"") && found.contains("sizes up to 12"), "{found}");
+    let found = fault("s", street().bordered("street", PatternType::door(1, 1, -0.5, 0.5)));
+    assert!(found.contains("border to \"street\"") && found.contains("fractions"), "{found}");
     let found = fault("ss", Template::new("street", "stone").bordered("street", PatternType::one_way_in(2)));
     assert!(found.contains("column 0, row 0") && found.contains("as many inputs as outputs"), "{found}");
     let found = fault("ss", Template::new("street", "stone").bordered("street", PatternType::mixed(300, 300)));

@@ -217,13 +217,16 @@ impl FramePatch {
         found
     }
 
-    /// Walkers who meet near a corner before either can step aside, or whose bodies reach over the next edge.
+    /// The first walkers who meet near a corner before either can step aside, or whose bodies reach over the next edge.
     fn corner_problems(&self, limits: &Limits) -> Vec<String> {
         let inputs = self.inputs().map(|port| self.line(port, true, limits));
         let lines: Vec<Line> = inputs.chain(self.outputs().map(|port| self.line(port, false, limits))).collect();
         let borders: Vec<Border> = (0..self.outline.len()).map(|edge| self.border(edge)).collect();
         let mut found = Vec::new();
         for (i, a) in lines.iter().enumerate() {
+            if !found.is_empty() {
+                break;
+            }
             let others = borders.iter().enumerate().filter(|&(edge, _)| edge != a.edge);
             let cut = others.filter(|(_, b)| {
                 // The deep end of the straight part is before the time of an output, after that of an input.

@@ -98,6 +98,9 @@ impl Plan {
             }
         }
         for template in &self.templates {
+            if let Some(problem) = template.problems().into_iter().next() {
+                return Err(Error::invalid("map", format!("template {:?}", template.name), problem));
+            }
             let known = |name: &&String| self.templates.iter().any(|t| t.name == **name);
             if let Some(name) = template.borders.keys().find(|name| !known(name)) {
                 let problem = format!("expected a border to one of the templates, found {name:?}");

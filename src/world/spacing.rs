@@ -77,12 +77,18 @@ pub(super) fn directed(pattern: &Pattern) -> impl Iterator<Item = (&Crossing, bo
     pattern.inputs.iter().map(|c| (c, true)).chain(pattern.outputs.iter().map(|c| (c, false)))
 }
 
+/// Nobody reads more problems of one pattern than this.
+const ENOUGH: usize = 20;
+
 /// What keeps a solver from keeping the limits on this border whatever it does inside; empty if nothing does.
 pub(super) fn problems(pattern: &Pattern, limits: &Limits) -> Vec<String> {
     let all: Vec<_> = directed(pattern).collect();
     let apart = 2.0 * limits.radius + GAP;
     let mut found = Vec::new();
     for (i, &a) in all.iter().enumerate() {
+        if found.len() >= ENOUGH {
+            break;
+        }
         if a.0.speed() > limits.speed || a.0.across * STRAIGHT_SECS < least_depth(limits) {
             let (least, most) = (least_depth(limits) / STRAIGHT_SECS, limits.speed);
             found.push(format!(

@@ -21,14 +21,31 @@ pub enum Amount {
     Density(f32),
 }
 
+/// More of one thing in a patch is a mistake.
+const MOST: usize = 500;
+/// People who gather in one group, at most.
+const LARGEST_GROUP: usize = 12;
+
 impl Amount {
+    fn problem(self) -> Option<String> {
+        match self {
+            Self::Number(least, most) if least > most || most > MOST => {
+                Some(format!("expected a range of numbers up to {MOST}, found {least} to {most}"))
+            }
+            Self::Density(density) if !(0.0..=10.0).contains(&density) => {
+                Some(format!("expected a density from 0 to 10 per square metre, found {density}"))
+            }
+            _ => None,
+        }
+    }
+
     fn draw(self, area: f32, rng: &mut ChaCha8Rng) -> usize {
         match self {
             Self::Number(least, most) => rng.random_range(least..=most.max(least)),
             Self::Density(density) => {
                 let wanted = (density * area).max(0.0);
                 // What is left over after whole ones is the chance of one more.
-                wanted as usize + usize::from(rng.random::<f32>() < wanted.fract())
+                (wanted as usize + usize::from(rng.random::<f32>() < wanted.fract())).min(MOST)
             }
         }
     }
@@ -130,6 +147,29 @@ impl Template {
         self
     }
 
+    /// All that is wrong with it, each with its place; empty if nothing is.
+    pub fn problems(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        for furnishing in &self.furnishings {
+            let problem = furnishing.amount.problem().or_else(|| furnishing.outline.at(Vec2::ZERO, 0.0).problem());
+            found.extend(problem.map(|problem| format!("furnishing {:?}: {problem}", furnishing.name)));
+        }
+        for gathering in &self.gatherings {
+            let problem = gathering.amount.problem().or_else(|| gathering.problem());
+            found.extend(problem.map(|problem| format!("gathering {:?}: {problem}", gathering.name)));
+        }
+        for (name, kind) in &self.borders {
+            let flows = [kind.inputs, kind.outputs];
+            let odd = flows
+                .iter()
+                .find(|f| ![f.place.0, f.place.1, f.time.0, f.time.1].iter().all(|s| (0.0..=1.0).contains(s)));
+            found.extend(odd.map(|f| {
+                format!("border to {name:?}: expected fractions in [0, 1], found {:?} and {:?}", f.place, f.time)
+            }));
+        }
+        found
+    }
+
     /// Puts objects and people into `frame`, at random; what finds no room is left out.
     pub fn furnish(&self, frame: &mut FramePatch, limits: &Limits, rng: &mut ChaCha8Rng) {
         let corners = &frame.outline;
@@ -151,6 +191,14 @@ impl Template {
 }
 
 impl Gathering {
+    fn problem(&self) -> Option<String> {
+        if self.size.0 > self.size.1 || self.size.1 > LARGEST_GROUP {
+            return Some(format!("expected a range of sizes up to {LARGEST_GROUP}, found {:?}", self.size));
+        }
+        let fits = (0.1..=3.0).contains(&self.radius);
+        (!fits).then(|| format!("expected a radius from 0.1 to 3 m, found {}", self.radius))
+    }
+
     /// Adds one group: people on a circle who look at its middle.
     fn join(&self, frame: &mut FramePatch, limits: &Limits, rng: &mut ChaCha8Rng) {
         let size = rng.random_range(self.size.0..=self.size.1.max(self.size.0));
