@@ -74,8 +74,8 @@ impl PatternType {
         }
     }
 
-    /// Limited in space: people keep to the right, those who come in on the first half of the edge as it runs
-    /// counter-clockwise about the patch, those who go out on the second.
+    /// Limited in space: people keep to the right. Edges run counter-clockwise about the patch, so those who come in use
+    /// the second half of the edge and those who go out the first; both patches see it alike.
     pub const fn lanes(inputs: usize, outputs: usize) -> Self {
         Self { inputs: Flow::anywhere(inputs).through(0.5, 1.0), outputs: Flow::anywhere(outputs).through(0.0, 0.5) }
     }
@@ -258,6 +258,11 @@ mod tests {
         assert!(door.crossings().all(|c| (3.2..=4.8).contains(&c.place)));
         let light = generate(PatternType::light(2, 2, 0.9, 0.2), 3);
         assert!(light.crossings().all(|c| c.time >= 9.0 || c.time <= 2.0));
+    }
+
+    #[test]
+    fn lanes_look_alike_from_both_sides() {
+        assert_eq!(PatternType::lanes(3, 3).mirror(), PatternType::lanes(3, 3));
     }
 
     #[test]

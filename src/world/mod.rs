@@ -20,7 +20,7 @@
 //! | file | what |
 //! |---|---|
 //! | `pattern.rs`, `spacing.rs`, `kinds.rs` | crossings on a border, their mirror image, how far apart they stay, types and random patterns |
-//! | `shape.rs`, `frame.rs`, `path.rs`, `patch.rs` | objects, the unsolved patch, a walker's curve, the solved patch |
+//! | `shape.rs`, `frame.rs`, `valid.rs`, `path.rs`, `patch.rs` | objects, the unsolved patch and what is wrong with it, a walker's curve, the solved patch |
 //! | `assign.rs`, `pairing.rs`, `route.rs` | which input leads to which output and when, on which side of the objects |
 //! | `solve/` | curves without collisions, within the limits of walking; the published particle method, to compare |
 //! | `identity.rs`, `lattice.rs` | who is who over all borders and periods, at any time; endless worlds |
@@ -49,6 +49,7 @@ mod solve;
 mod spacing;
 mod stream;
 mod template;
+mod valid;
 
 pub use frame::{Border, FramePatch, Standing, StaticObject};
 pub use identity::{Identities, Link, Person};
