@@ -73,7 +73,7 @@ fn a_box_rests_where_it_was_put_until_another_takes_it_up() {
         let taken = between_palms(&kind, prop, 1, bob.begin).with_y(0.13);
         assert!(put.distance(taken) < 0.002, "{put} {taken}");
         for clock in ann.end + 1..bob.begin {
-            assert_eq!(prop.place(&kind, clock).unwrap().middle.distance(put) < 1e-3, true, "frame {clock}");
+            assert!(prop.place(&kind, clock).unwrap().middle.distance(put) < 1e-3, "frame {clock}");
         }
         // Bob is on the other side of it.
         let stand = |role: usize, clock: u32| {

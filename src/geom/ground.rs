@@ -31,6 +31,12 @@ impl Turn {
         Vec2::new(self.cos * v.x + self.sin * v.y, self.cos * v.y - self.sin * v.x)
     }
 
+    /// This turn and another.
+    #[inline]
+    pub fn then(self, inner: Self) -> Self {
+        Self { cos: self.cos * inner.cos - self.sin * inner.sin, sin: self.sin * inner.cos + self.cos * inner.sin }
+    }
+
     /// The angle in radians, in (-pi, pi].
     pub fn angle(self) -> f32 {
         self.sin.atan2(self.cos)

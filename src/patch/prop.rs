@@ -211,14 +211,9 @@ impl PatchSet {
         for kind in &self.kinds {
             for (k, prop) in kind.props.iter().enumerate() {
                 problems.extend(prop.problems(kind).into_iter().map(|p| (kind.name.clone(), p)));
-                for end in [0, 1] {
-                    let anchor = |p: &PatchProp| p.anchors()[end].filter(|_| [p.before, p.after][end].is_some());
-                    let role = |p: &PatchProp| anchor(p).map(|a| a.0);
-                    if let Some(other) = kind.props[..k].iter().find(|o| role(o).is_some() && role(o) == role(prop)) {
-                        let when = ["before", "after"][end];
-                        let problem = format!("{} and {} both lie there {when} one role", other.name, prop.name);
-                        problems.push((kind.name.clone(), problem));
-                    }
+                for (other, when) in kind.props[..k].iter().filter_map(|o| Some((o, lie_by_one_role(prop, o)?))) {
+                    let problem = format!("{} and {} both lie there {when} one role", other.name, prop.name);
+                    problems.push((kind.name.clone(), problem));
                 }
                 for other in kind.props[..k].iter().filter(|other| in_same_hands(prop, other)) {
                     problems.push((kind.name.clone(), format!("{} and {} in the same hands", other.name, prop.name)));
@@ -255,6 +250,13 @@ impl Port<'_> {
             self.role, self.end
         )
     }
+}
+
+/// Whether one role's motion says of two boxes where they lie before it, or after: pieces of tilings know of one.
+fn lie_by_one_role(a: &PatchProp, b: &PatchProp) -> Option<&'static str> {
+    let role = |p: &PatchProp, end: usize| p.anchors()[end].filter(|_| [p.before, p.after][end].is_some()).map(|a| a.0);
+    let same = |end: usize| role(a, end).is_some() && role(a, end) == role(b, end);
+    ["before", "after"].into_iter().enumerate().find_map(|(end, when)| same(end).then_some(when))
 }
 
 fn in_same_hands(a: &PatchProp, b: &PatchProp) -> bool {

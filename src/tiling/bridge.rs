@@ -9,8 +9,9 @@ use rand::{Rng, RngExt};
 use rand_chacha::ChaCha8Rng;
 
 use super::domain::Domain;
-use super::library::{Closing, Library, Move};
+use super::library::{Closing, Library, Move, Span};
 use super::occupancy::{Occupancy, Piece};
+use super::piece::Rigid;
 use crate::geom::{Ground, wrap_angle};
 use crate::motion::{FPS, MotionPath};
 
@@ -56,8 +57,6 @@ const TURN_WEIGHT: f32 = 0.5;
 const EASY_SPEED: f32 = 1.2;
 const TOP_SPEED: f32 = 1.7;
 const SLACK: f32 = 0.5;
-const SINGLE_REACH: f32 = 0.9;
-const PAIR_REACH: f32 = 1.2;
 const EASY_REACH: f32 = 0.45;
 const EASY_TURN: f32 = 0.6;
 const MAX_TURN: f32 = std::f32::consts::FRAC_PI_3;
@@ -183,8 +182,13 @@ impl Bridge {
             Goal::Since(_) => (n.at.at, n.at.tick),
             _ => (self.nodes[n.parent as usize].at.at, self.nodes[n.parent as usize].at.tick),
         };
-        let piece = Piece::rigid(view.library, view.domain, n.role, NO_INSTANCE, entry, begin);
-        if !view.occupancy.is_free(view.library, view.domain, &piece)
+        let View { library, domain, occupancy } = view;
+        let boxes = library.roles[n.role as usize].leaves_box();
+        if !boxes && !occupancy.is_free_rigid(library, domain, n.role, Rigid::new(library, n.role, entry, begin)) {
+            return false;
+        }
+        let piece = Piece::rigid(library, domain, n.role, NO_INSTANCE, entry, begin);
+        if (boxes && !occupancy.is_free(library, domain, &piece))
             || (n.boxed && self.meets_own_way(view, n.parent, &piece))
         {
             return false;
@@ -212,8 +216,11 @@ impl Bridge {
             Goal::Since(_) => (&view.library.backward, -1),
             _ => (&view.library.forward, 1),
         };
+        let turn = from.at.turn();
         for step in &moves[from.group as usize] {
-            let at = Port { at: from.at.then(step.to), tick: from.tick + direction * step.ticks, group: step.group };
+            let place = from.at.position + turn.apply(step.to.position);
+            let at = Ground::new(place, from.at.heading + step.to.heading);
+            let at = Port { at, tick: from.tick + direction * step.ticks, group: step.group };
             let inside = at.tick < 0 || at.tick > view.domain.horizon || view.domain.holds(at.at.position, WALL_ROOM);
             if !inside || self.seen.contains(&key(&at)) {
                 continue;
@@ -236,24 +243,20 @@ impl Bridge {
         }
         let groups = view.library.set.groups.len();
         let closings = &view.library.closings[from.group as usize * groups + to.group as usize];
-        if closings.is_empty() {
+        let count = closings.all.len();
+        if count == 0 {
             return None;
         }
         // Begin anywhere, so that no kind is always the first to be tried.
-        let start = rng.next_u32() as usize % closings.len();
-        let (tail, head) = (&closings[start..], &closings[..start]);
-        tail.iter()
-            .chain(head)
-            .filter(|c| c.ticks.0 <= left && left <= c.ticks.1)
-            .find_map(|c| self.try_close(view, c, node, to))
+        let start = rng.next_u32() as usize % count;
+        let way = from.at.inverse().then(to.at);
+        let fits = |&i: &usize| closings.spans[i].leads(way, left, closings.spans[i].reach, MAX_TURN);
+        (start..count).chain(0..start).filter(fits).find_map(|i| self.try_close(view, &closings.all[i], node, to))
     }
 
     fn try_close(&mut self, view: View, closing: &Closing, node: u32, to: Port) -> Option<Vec<Piece>> {
         let Node { at: from, boxed, .. } = self.nodes[node as usize];
-        let reach = if closing.roles[1].is_some() { PAIR_REACH } else { SINGLE_REACH };
-        if !ends_near(closing, from, to, reach, MAX_TURN)
-            || !closing.strand.deform(from.at, to.at, &view.library.limits, &mut self.path)
-        {
+        if !closing.strand.deform(from.at, to.at, &view.library.limits, &mut self.path) {
             return None;
         }
         let pieces = split(view, closing, &self.path, from.tick, to.tick)?;
@@ -278,18 +281,21 @@ impl Bridge {
     }
 }
 
-fn ends_near(closing: &Closing, from: Port, to: Port, reach: f32, turn: f32) -> bool {
-    let end = from.at.then(closing.exit);
-    end.position.distance_squared(to.at.position) < reach * reach
-        && wrap_angle(end.heading - to.at.heading).abs() < turn
+impl Span {
+    /// True if the closing takes `left` ticks and ends no farther than `reach` and `turn` from the end of `way`.
+    fn leads(&self, way: Ground, left: i32, reach: f32, turn: f32) -> bool {
+        self.ticks.0 <= left
+            && left <= self.ticks.1
+            && self.exit.position.distance_squared(way.position) < reach * reach
+            && wrap_angle(self.exit.heading - way.heading).abs() < turn
+    }
 }
 
 /// Number of strands that lead from one port to another with little deformation: how easy the bridge will be.
 pub(super) fn easy_closings(library: &Library, from: Port, to: Port) -> usize {
-    let left = to.tick - from.tick;
+    let (left, way) = (to.tick - from.tick, from.at.inverse().then(to.at));
     let closings = &library.closings[from.group as usize * library.set.groups.len() + to.group as usize];
-    let easy = |c: &&Closing| c.ticks.0 <= left && left <= c.ticks.1 && ends_near(c, from, to, EASY_REACH, EASY_TURN);
-    closings.iter().filter(easy).count()
+    closings.spans.iter().filter(|span| span.leads(way, left, EASY_REACH, EASY_TURN)).count()
 }
 
 /// Cuts a deformed strand into the pieces of its roles, sharing out the ticks in proportion to the sources'; `None` if

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::audition::plays_cleanly;
 use super::footprint::{Footprint, footprints, lying, reach};
 use crate::deform::{Limits, Strand};
-use crate::geom::{Ground, Upright};
+use crate::geom::{Ground, Turn, Upright};
 use crate::motion::{JOINT_COUNT, Motion, MotionPath};
 use crate::patch::{PatchKind, PatchProp, PatchSet, fastest_turns, turn_between};
 
@@ -18,6 +18,9 @@ const RUSH: f32 = 1.1;
 const HURRY: f32 = 1.05;
 /// Longest strand of two single-person kinds that closes a gap, in frames.
 const MAX_STRAND_FRAMES: usize = 110;
+/// How far the end of a strand of one role and of two can be moved, metres.
+const SINGLE_REACH: f32 = 0.9;
+const PAIR_REACH: f32 = 1.2;
 
 /// A role of a kind: one fragment, relative to its own entry.
 pub(super) struct Role {
@@ -27,6 +30,8 @@ pub(super) struct Role {
     pub role: u32,
     /// The path seen from its first frame.
     pub path: MotionPath,
+    /// The path's headings as turns.
+    pub turns: Vec<Turn>,
     /// Where it ends, seen from where it begins.
     pub exit: Ground,
     /// Duration in ticks if not warped: frames - 1.
@@ -97,10 +102,26 @@ pub(super) struct Closing {
     pub roles: [Option<u32>; 2],
     /// Path of both.
     pub strand: Strand,
+}
+
+/// What tells whether a closing may fit: looked at much more often than the closing itself.
+#[derive(Clone, Copy)]
+pub(super) struct Span {
     /// Where it ends if not deformed, seen from where it begins.
     pub exit: Ground,
     /// Fewest and most ticks.
     pub ticks: (i32, i32),
+    /// How far its end can be moved, metres.
+    pub reach: f32,
+}
+
+/// All closings from one pose group to another, and the span of each.
+#[derive(Default)]
+pub(super) struct Closings {
+    /// The spans.
+    pub spans: Vec<Span>,
+    /// The closings, in the same order.
+    pub all: Vec<Closing>,
 }
 
 /// A patch set made ready for planning.
@@ -120,7 +141,7 @@ pub(super) struct Library<'a> {
     /// Moves by the pose group they start from, backward in time.
     pub backward: Vec<Vec<Move>>,
     /// By entry group * groups + exit group.
-    pub closings: Vec<Vec<Closing>>,
+    pub closings: Vec<Closings>,
     /// Fastest turn of each joint in the captures, radians per frame.
     pub fastest: [f32; JOINT_COUNT],
     /// Longest way of the hips over the ground in the captures, metres per frame.
@@ -207,6 +228,7 @@ fn prepare(set: &PatchSet, kind: u32, role: u32, limits: &Limits, fastest: &[f32
     Role {
         kind,
         role,
+        turns: path.headings.iter().map(|&h| Turn::from_angle(h)).collect(),
         exit: path.at(path.len() - 1),
         ticks: path.len() as i32 - 1,
         tick_range: tick_range(&fragment.motion, limits, fastest),
@@ -270,15 +292,18 @@ fn tick_range(motion: &Motion, limits: &Limits, fastest: &[f32; JOINT_COUNT]) ->
     (shortest.max(unhurried).min(longest), longest)
 }
 
-fn closings(roles: &[Role], groups: usize, is_single: impl Fn(&Role) -> bool) -> Vec<Vec<Closing>> {
+fn closings(roles: &[Role], groups: usize, is_single: impl Fn(&Role) -> bool) -> Vec<Closings> {
     let strands: Vec<Option<Strand>> = roles.iter().map(|r| is_single(r).then(|| Strand::new(&r.path))).collect();
-    let mut table: Vec<Vec<Closing>> = (0..groups * groups).map(|_| Vec::new()).collect();
+    let mut table: Vec<Closings> = (0..groups * groups).map(|_| Closings::default()).collect();
     let mut add = |first: usize, second: Option<usize>, strand: Strand| {
         let ranges = [Some(first), second].into_iter().flatten().map(|r| roles[r].tick_range);
         let ticks = ranges.fold((0, 0), |sum, range| (sum.0 + range.0, sum.1 + range.1));
         let (from, to) = (roles[first].entry_group, roles[second.unwrap_or(first)].exit_group);
         let roles = [Some(first as u32), second.map(|s| s as u32)];
-        table[from as usize * groups + to as usize].push(Closing { roles, exit: strand.exit(), strand, ticks });
+        let reach = if second.is_some() { PAIR_REACH } else { SINGLE_REACH };
+        let closings = &mut table[from as usize * groups + to as usize];
+        closings.spans.push(Span { exit: strand.exit(), ticks, reach });
+        closings.all.push(Closing { roles, strand });
     };
     for (i, first) in strands.iter().enumerate() {
         let Some(first) = first else { continue };

@@ -6,9 +6,10 @@ use glam::Vec2;
 
 use super::bridge::NO_INSTANCE;
 use super::domain::Domain;
+use super::footprint::Footprint;
 use super::library::Library;
+use super::piece::{Body, Rigid, footprint, overlap, world_discs};
 pub(super) use super::piece::{Piece, depth};
-use super::piece::{footprint, overlap, world_discs};
 
 /// Cell size of the grid in metres.
 const CELL: f32 = 1.0;
@@ -33,6 +34,24 @@ struct Shown {
     id: PieceId,
     position: Vec2,
     reach: f32,
+}
+
+/// Whose bodies are asked about.
+#[derive(Clone, Copy)]
+struct Player<'a> {
+    library: &'a Library<'a>,
+    role: u32,
+    instance: u32,
+}
+
+impl Player<'_> {
+    fn discs(self, body: &Body) -> Footprint {
+        world_discs(body, footprint(self.library, self.role, body))
+    }
+
+    fn is_inside(self, domain: &Domain, body: &Body) -> bool {
+        domain.holds(body.position, body.reach) || self.discs(body).iter().all(|d| domain.holds(d.truncate(), d.z))
+    }
 }
 
 /// All placed pieces.
@@ -135,25 +154,36 @@ impl Occupancy {
     }
 
     /// True if the piece stays inside the domain and clear of all bodies shown, but for those of its own instance.
-    /// Frames are probed coarse to fine.
     pub fn is_free(&self, library: &Library, domain: &Domain, piece: &Piece) -> bool {
-        let n = piece.bodies.len();
+        let player = Player { library, role: piece.role, instance: piece.instance };
+        self.is_clear(domain, player, piece.shown_from, piece.bodies.len(), |i| piece.bodies[i])
+    }
+
+    /// The same of a role placed rigidly, if it is no part of an instance and leaves no boxes lying.
+    pub fn is_free_rigid(&self, library: &Library, domain: &Domain, role: u32, rigid: Rigid) -> bool {
+        let (player, ticks) = (Player { library, role, instance: NO_INSTANCE }, rigid.ticks(domain));
+        self.is_clear(domain, player, ticks.start, ticks.len(), |i| rigid.body(ticks.start + i as i32))
+    }
+
+    /// Frames are probed coarse to fine.
+    fn is_clear(&self, domain: &Domain, player: Player, from: i32, n: usize, body: impl Fn(usize) -> Body) -> bool {
         let free = |i: usize| {
-            self.is_inside(library, domain, piece, i)
-                && self.meet(library, piece, i, &mut |_| ControlFlow::Break(())).is_continue()
+            let body = body(i);
+            player.is_inside(domain, &body)
+                && self.meet(player, from + i as i32, &body, &mut |_| ControlFlow::Break(())).is_continue()
         };
         (0..n).step_by(8).all(free) && (4..n).step_by(8).all(free) && (0..n).filter(|i| i % 4 != 0).all(free)
     }
 
     /// The pieces whose bodies are in the way of `piece`, sorted; `None` if a wall or a crush is.
     pub fn blockers(&self, library: &Library, domain: &Domain, piece: &Piece) -> Option<Vec<PieceId>> {
-        let n = piece.bodies.len();
-        if !(0..n).all(|i| self.is_inside(library, domain, piece, i)) {
+        let player = Player { library, role: piece.role, instance: piece.instance };
+        if !piece.bodies.iter().all(|body| player.is_inside(domain, body)) {
             return None;
         }
         let mut found = Vec::new();
-        for i in 0..n {
-            let crush = self.meet(library, piece, i, &mut |id| {
+        for (tick, body) in (piece.shown_from..).zip(&piece.bodies) {
+            let crush = self.meet(player, tick, body, &mut |id| {
                 if let Some(id) = id {
                     found.push(id);
                     return ControlFlow::Continue(());
@@ -169,24 +199,15 @@ impl Occupancy {
         Some(found)
     }
 
-    fn is_inside(&self, library: &Library, domain: &Domain, piece: &Piece, i: usize) -> bool {
-        let body = &piece.bodies[i];
-        domain.holds(body.position, body.reach) || {
-            world_discs(body, footprint(library, piece.role, body)).iter().all(|d| domain.holds(d.truncate(), d.z))
-        }
-    }
-
-    /// Calls `met` with each piece whose body overlaps body `i` of `piece`, or with `None` for a cell that is full,
-    /// until it breaks.
+    /// Calls `met` with each piece whose body overlaps `body`, or with `None` for a cell that is full, until it breaks.
     fn meet(
         &self,
-        library: &Library,
-        piece: &Piece,
-        i: usize,
+        player: Player,
+        tick: i32,
+        body: &Body,
         met: &mut impl FnMut(Option<PieceId>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let body = &piece.bodies[i];
-        let tick = piece.shown_from + i as i32;
+        let library = player.library;
         let reach = body.reach + self.max_reach;
         let mut discs = None;
         let (columns, rows) = self.cells_within(body.position, reach);
@@ -202,11 +223,11 @@ impl Occupancy {
                         continue;
                     }
                     let other = self.piece(shown.id);
-                    if other.instance == piece.instance && piece.instance != NO_INSTANCE {
+                    if other.instance == player.instance && player.instance != NO_INSTANCE {
                         continue;
                     }
                     let theirs = other.body(tick).expect("shown at this tick");
-                    let own = discs.get_or_insert_with(|| world_discs(body, footprint(library, piece.role, body)));
+                    let own = discs.get_or_insert_with(|| player.discs(body));
                     if overlap(own, &world_discs(theirs, footprint(library, other.role, theirs))) {
                         met(Some(shown.id))?;
                     }

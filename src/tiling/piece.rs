@@ -43,12 +43,16 @@ pub(super) struct Piece {
 impl Piece {
     /// A role placed rigidly with its entry at `from`.
     pub fn rigid(library: &Library, domain: &Domain, role: u32, instance: u32, from: Ground, begin: i32) -> Self {
-        let source = &library.roles[role as usize];
+        let rigid = Rigid::new(library, role, from, begin);
+        let (source, end) = (rigid.source, begin + rigid.source.ticks);
         let path = MotionPath {
-            points: source.path.points.iter().map(|&p| from.apply(p)).collect(),
+            points: source.path.points.iter().map(|&p| rigid.place(p)).collect(),
             headings: source.path.headings.iter().map(|h| h + from.heading).collect(),
         };
-        Self::along(library, domain, role, instance, path, begin, begin + source.ticks)
+        let bodies = rigid.ticks(domain).map(|tick| rigid.body(tick)).collect();
+        let mut piece = Self { role, instance, begin, end, path, shown_from: begin.max(0), bodies };
+        piece.lay_boxes(source, domain.horizon);
+        piece
     }
 
     /// A role placed along a deformed path.
@@ -145,6 +149,39 @@ impl Piece {
         let until = |p: &Self| p.shown_from + p.bodies.len() as i32;
         let ticks = self.shown_from.max(other.shown_from)..until(self).min(until(other));
         ticks.into_iter().any(|tick| depth(library, self, other, tick).is_some())
+    }
+}
+
+/// A role placed rigidly whose bodies are worked out one by one: mostly one of the first is found in the way.
+#[derive(Clone, Copy)]
+pub(super) struct Rigid<'a> {
+    source: &'a Role,
+    from: Ground,
+    turn: Turn,
+    begin: i32,
+}
+
+impl<'a> Rigid<'a> {
+    /// With its entry at `from` at tick `begin`.
+    pub fn new(library: &'a Library, role: u32, from: Ground, begin: i32) -> Self {
+        Self { source: &library.roles[role as usize], from, turn: from.turn(), begin }
+    }
+
+    /// The ticks that it occupies.
+    pub fn ticks(&self, domain: &Domain) -> std::ops::Range<i32> {
+        self.begin.max(0)..(self.begin + self.source.ticks).min(domain.horizon)
+    }
+
+    /// The body at a tick that it occupies.
+    #[inline]
+    pub fn body(&self, tick: i32) -> Body {
+        let frame = (tick - self.begin) as usize;
+        let (position, turn) = (self.place(self.source.path.points[frame]), self.turn.then(self.source.turns[frame]));
+        Body { position, turn, reach: self.source.reach[frame], frame: frame as u32 }
+    }
+
+    fn place(&self, point: Vec2) -> Vec2 {
+        self.from.position + self.turn.apply(point)
     }
 }
 

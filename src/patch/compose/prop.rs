@@ -8,6 +8,7 @@ use super::chain::Chain;
 use super::clip::Grasp;
 use super::solve::{Solved, Tie};
 use super::story::{Composition, Prop, Role, Use, bad};
+use crate::Result;
 use crate::deform::Bond;
 use crate::geom::{Ground, Upright};
 use crate::motion::contacts::palm;
@@ -16,7 +17,6 @@ use crate::motion::{FPS, Motion};
 use crate::patch::cut_props::{PASS_FRAMES, far_from, lengthen, under};
 use crate::patch::prop::{at_palms, settled};
 use crate::patch::{PatchKind, PatchProp, PropHold};
-use crate::{Error, Result};
 
 /// Where one puts a box down and another takes it up, or both have it in their hands, it may be this much apart, metres.
 const APART: f32 = 0.1;
@@ -218,55 +218,64 @@ pub(super) fn of_kind(
 }
 
 fn of_kind_one(story: &Composition, found: &Found, kind: &PatchKind, solved: &Solved) -> Result<PatchProp> {
-    let fail = |problem: String| -> Error { bad(found.line, format!("prop {}: {problem}", found.name)) };
     let hold = |(role, g, _): &(usize, Grasp, f32)| PropHold {
         role: *role as u32,
         begin: solved.tick(*role, g.span[0]),
         end: solved.tick(*role, g.span[1]),
     };
-    let mut holds: Vec<PropHold> = found.uses.iter().map(hold).collect();
+    let holds: Vec<PropHold> = found.uses.iter().map(hold).collect();
     let (size, grip, name) = (found.size, found.grip, found.name.clone());
-    let mut prop = PatchProp { name, size, grip, holds: vec![], sat: vec![], before: None, after: None };
-    let (first, last) = (&found.uses[0], &found.uses[found.uses.len() - 1]);
-    if first.1.sits {
-        let fragment = &kind.fragments[first.0];
-        let at = under(fragment.motion.path.at((holds[0].begin - fragment.begin) as usize), first.1.seat, size[1]);
-        (prop.sat, prop.before, prop.after) = (holds, Some(at), Some(at));
-        for (seat, used) in prop.sat.iter().zip(&found.uses) {
-            let fragment = &kind.fragments[used.0];
-            let own = under(fragment.motion.path.at((seat.begin - fragment.begin) as usize), used.1.seat, size[1]);
-            let away = own.middle.distance(at.middle);
-            if away > APART {
-                let name = &story.roles[used.0].name;
-                return Err(fail(format!("expected it under {name} where it stands, found it {away:.2} m away")));
-            }
-        }
-    } else {
-        lengthen(&mut holds, |role| solved.span(role as usize));
-        prop.holds = holds;
-        let rest = |role: u32, clock: u32| settled(prop.in_hands(kind, role, clock), size[1]);
-        let (a, b) = (prop.holds[0], prop.holds[prop.holds.len() - 1]);
-        let before = first.1.whole[0].then(|| rest(a.role, a.begin));
-        let after = last.1.whole[1].then(|| rest(b.role, b.end));
-        (prop.before, prop.after) = (before, after);
-        if let Some(apart) = apart(&prop, kind) {
-            return Err(fail(format!(
-                "expected it where both have it when it changes hands, found {apart:.2} m between"
-            )));
+    let prop = PatchProp { name, size, grip, holds: vec![], sat: vec![], before: None, after: None };
+    let prop =
+        if found.uses[0].1.sits { seated(prop, holds, found, kind) } else { held(prop, holds, found, kind, solved) };
+    let name = |role: u32| story.roles[role as usize].name.as_str();
+    let problem = prop.problems(kind).into_iter().next();
+    let problem = problem.or_else(|| Some(format!("prop {}: {}", found.name, misplaced(&prop, found, kind, name)?)));
+    problem.map_or(Ok(prop), |problem| Err(bad(found.line, problem)))
+}
+
+/// A box that stands under who sits on it first.
+fn seated(prop: PatchProp, sat: Vec<PropHold>, found: &Found, kind: &PatchKind) -> PatchProp {
+    let at = Some(seat(&sat[0], &found.uses[0].1, kind));
+    PatchProp { sat, before: at, after: at, ..prop }
+}
+
+/// Where a box would stand under a sitter.
+fn seat(sat: &PropHold, grasp: &Grasp, kind: &PatchKind) -> Upright {
+    let fragment = &kind.fragments[sat.role as usize];
+    under(fragment.motion.path.at((sat.begin - fragment.begin) as usize), grasp.seat, grasp.size[1])
+}
+
+/// A box that people hold; where it rests follows from the hands that take it up and put it down.
+fn held(prop: PatchProp, mut holds: Vec<PropHold>, found: &Found, kind: &PatchKind, solved: &Solved) -> PatchProp {
+    lengthen(&mut holds, |role| solved.span(role as usize));
+    let rest = |hold: PropHold, clock: u32| settled(prop.in_hands(kind, hold.role, clock), prop.size[1]);
+    let (a, b) = (holds[0], holds[holds.len() - 1]);
+    let before = found.uses[0].1.whole[0].then(|| rest(a, a.begin));
+    let after = found.uses[found.uses.len() - 1].1.whole[1].then(|| rest(b, b.end));
+    PatchProp { holds, before, after, ..prop }
+}
+
+/// What is wrong with where a box of sound times is.
+fn misplaced<'a>(prop: &PatchProp, found: &Found, kind: &PatchKind, name: impl Fn(u32) -> &'a str) -> Option<String> {
+    for (sat, used) in prop.sat.iter().zip(&found.uses) {
+        let away = seat(sat, &used.1, kind).middle.distance(prop.before?.middle);
+        if away > APART {
+            return Some(format!("expected it under {} where it stands, found it {away:.2} m away", name(sat.role)));
         }
     }
-    if let Some((role, problem)) = far_from(&prop, kind) {
-        return Err(fail(format!("{}: {problem}", story.roles[role as usize].name)));
+    if let Some(apart) = apart(prop, kind) {
+        return Some(format!("expected it where both have it when it changes hands, found {apart:.2} m between"));
+    }
+    if let Some((role, problem)) = far_from(prop, kind) {
+        return Some(format!("{}: {problem}", name(role)));
     }
     let ends = [(prop.before, prop.holds.first(), "take it up"), (prop.after, prop.holds.last(), "put it down")];
-    for (rest, hold, verb) in ends {
-        if let (Some(rest), Some(hold)) = (rest.filter(|r| r.middle.y > 0.5 * size[1]), hold) {
-            let name = &story.roles[hold.role as usize].name;
-            let found = format!("found it {:.2} m above", rest.middle.y - 0.5 * size[1]);
-            return Err(fail(format!("expected {name} to {verb} on the ground, {found}")));
-        }
-    }
-    Ok(prop)
+    ends.into_iter().find_map(|(rest, hold, verb)| {
+        let above = rest?.middle.y - 0.5 * prop.size[1];
+        let name = name(hold?.role);
+        (above > 0.0).then(|| format!("expected {name} to {verb} on the ground, found it {above:.2} m above"))
+    })
 }
 
 /// How far apart two who pass a box, or who take it up where it was put down, have it; `None` if near enough.
