@@ -16,6 +16,7 @@ pub mod refine;
 pub mod samples;
 pub mod stage;
 pub mod tiling;
+pub mod world;
 
 #[cfg(test)]
 extern crate self as crowdquilt;

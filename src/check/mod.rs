@@ -30,6 +30,7 @@ mod report;
 mod speed;
 mod stitch;
 mod summary;
+pub mod world;
 
 pub use limits::Limits;
 pub use report::{Report, Row};

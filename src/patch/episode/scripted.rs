@@ -41,7 +41,7 @@ fn script(name: &str) -> Option<(bool, Vec<Stroke>)> {
     if name == "sit-talk" {
         // 1.25 m apart, and more once seated, the second 0.2 s later; time begins once the first is seated.
         let speaks = gesticulates(0, 0.9, 1.0);
-        return Some((false, [sits(0, -1.65, 3.6), sits(1, -1.45, 3.6), speaks].concat()));
+        return Some((false, [sits(0, -1.65, 2.5), sits(1, -1.45, 2.5), speaks].concat()));
     }
     let what = name.strip_suffix("-walk").or(name.strip_suffix("-stand"))?;
     let bow = |person: usize, t: f32| strokes(person, [t + 0.05, t + 0.75, t + 1.05, t + 1.75]);

@@ -113,13 +113,13 @@ fn sit_and_talk() -> Scene {
     for (i, a) in actors.iter_mut().enumerate() {
         let late = 6 * i as i32;
         a.wait(late);
-        let [down, up, end] = seat(a, 3.6);
+        let [down, up, end] = seat(a, 2.5);
         a.look([0.0, 0.4, end - 0.4, end], Sight::Person(1 - i));
         // The one speaks, the other listens.
         if i == 0 {
             gesticulate(a, Right, down + 0.9, 1);
         }
-        nod(a, down + [2.7, 1.6][i]);
+        nod(a, down + [2.4, 1.4][i]);
         seats.push([t + late as f32 / 30.0 + down, t + late as f32 / 30.0 + up]);
         a.stand((end * 30.0).ceil() as i32 + 3);
         roles.push((i, from, a.now));

@@ -1,0 +1,157 @@
+//! Who is who: a walker keeps its identity over all borders and periods, and it is known at any time without history.
+//!
+//! Following a walker from crossing to crossing gives a permutation of crossings. Once around a cycle takes a whole
+//! number m of periods, so the cycle carries m people. With n the periods from the cycle's begin to a crossing, whoever
+//! comes in there in period k is number (k - n) mod m of its cycle. In a world that repeats in space, once around may also
+//! lead w copies on: with k0 = k - n and j = floor(k0 / m) it is number k0 - j m of the cycle begun j w copies earlier.
+//! (Beyond the paper, which follows pointers from trajectory to trajectory.)
+
+/// Where a walker comes in next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Link {
+    /// The crossing, an index.
+    pub to: usize,
+    /// How many periods later than the period it came in here.
+    pub laps: u32,
+    /// How many copies of the world further, where the world repeats in space.
+    pub shift: [i64; 2],
+}
+
+/// Somebody: the same value at every crossing, period and time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
+pub struct Person {
+    /// Which cycle of crossings it walks on.
+    pub cycle: u32,
+    /// Which copy of the world the cycle begins in.
+    pub copy: [i64; 2],
+    /// Which of the people of the cycle: below their number, any number where the way leads out of the world.
+    pub number: i64,
+}
+
+impl Person {
+    /// A well-mixed number that is always the same for the same person and `seed`: picks looks and body.
+    pub fn hash(&self, seed: u64) -> u64 {
+        [u64::from(self.cycle), self.copy[0] as u64, self.copy[1] as u64, self.number as u64]
+            .into_iter()
+            .fold(seed, mix)
+    }
+}
+
+/// One step of splitmix64 over `hash` and a `value`.
+pub(super) fn mix(hash: u64, value: u64) -> u64 {
+    let mut z = (hash ^ value.wrapping_mul(0x2545_f491_4f6c_dd1d)).wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// Identities of all walkers of a world.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Identities {
+    /// Cycle, periods and copies since its begin, of every crossing.
+    crossings: Vec<(u32, i64, [i64; 2])>,
+    /// Periods (= people; 0 if the way leads out of the world) and copies once around, of every cycle.
+    cycles: Vec<(i64, [i64; 2])>,
+}
+
+impl Identities {
+    /// Follows `links`, one per crossing; `None` leads out of the world. No two may lead to the same crossing. O(crossings).
+    pub fn new(links: &[Option<Link>]) -> Self {
+        let mut reached = vec![false; links.len()];
+        links.iter().flatten().for_each(|link| reached[link.to] = true);
+        let mut found = Self { crossings: vec![(u32::MAX, 0, [0; 2]); links.len()], cycles: Vec::new() };
+        // Ways that begin at the border of the world first; all others are cycles.
+        let (inner, outer): (Vec<usize>, Vec<usize>) = (0..links.len()).partition(|&c| reached[c]);
+        for begin in outer.into_iter().chain(inner) {
+            if found.crossings[begin].0 == u32::MAX {
+                found.follow(begin, links);
+            }
+        }
+        found
+    }
+
+    fn follow(&mut self, begin: usize, links: &[Option<Link>]) {
+        let cycle = self.cycles.len() as u32;
+        let (mut at, mut laps, mut copies) = (begin, 0, [0; 2]);
+        loop {
+            self.crossings[at] = (cycle, laps, copies);
+            let Some(link) = links[at] else {
+                return self.cycles.push((0, [0; 2]));
+            };
+            laps += i64::from(link.laps);
+            copies = [copies[0] + link.shift[0], copies[1] + link.shift[1]];
+            at = link.to;
+            if at == begin {
+                return self.cycles.push((laps, copies));
+            }
+        }
+    }
+
+    /// Who comes in at `crossing` of the world's copy `copy` in `period`. O(1).
+    pub fn of(&self, crossing: usize, copy: [i64; 2], period: i64) -> Person {
+        let (cycle, laps, copies) = self.crossings[crossing];
+        let (people, around) = self.cycles[cycle as usize];
+        let since = period - laps;
+        let rounds = if people > 0 { since.div_euclid(people) } else { 0 };
+        let back = |axis: usize| copy[axis] - copies[axis] - rounds * around[axis];
+        Person { cycle, copy: [back(0), back(1)], number: since - rounds * people }
+    }
+
+    /// How many cycles (and ways through the world) there are.
+    pub fn cycles(&self) -> usize {
+        self.cycles.len()
+    }
+
+    /// How many people walk on the cycles of one copy of the world; those on ways through it are not counted.
+    pub fn people(&self) -> u64 {
+        self.cycles.iter().map(|&(people, _)| people as u64).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::collections::HashSet;
+
+    fn links(order: &[usize], laps: &[u32], shifts: &[(i64, i64)]) -> Vec<Option<Link>> {
+        let link = |((&to, &laps), &(x, z)): ((&usize, &u32), &(i64, i64))| Link { to, laps, shift: [x, z] };
+        order.iter().zip(laps).zip(shifts).map(|all| Some(link(all))).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn nobody_changes_on_the_way_and_all_are_different(
+            order in Just((0..40).collect::<Vec<usize>>()).prop_shuffle(),
+            laps in prop::collection::vec(1u32..4, 40),
+            shifts in prop::collection::vec((-1i64..2, -1i64..2), 40),
+            begin in 0usize..40,
+            period in -50i64..50,
+        ) {
+            let links = links(&order, &laps, &shifts);
+            let identities = Identities::new(&links);
+            let (mut at, mut copy, mut now) = (begin, [3, -7], period);
+            let who = identities.of(at, copy, now);
+            for _ in 0..500 {
+                let link = links[at].unwrap();
+                (at, now) = (link.to, now + i64::from(link.laps));
+                copy = [copy[0] + link.shift[0], copy[1] + link.shift[1]];
+                prop_assert_eq!(identities.of(at, copy, now), who);
+            }
+            // Whoever is on the way between two crossings in a period: as many as links last periods.
+            let present = |copies: i64| (0..40).flat_map(move |c| (0..copies).map(move |x| (c, [x, 0])));
+            let of = |(c, copy): (usize, [i64; 2])| (0..i64::from(laps[c])).map(move |lap| (c, copy, period - lap));
+            let people: Vec<Person> = present(4).flat_map(of).map(|(c, copy, k)| identities.of(c, copy, k)).collect();
+            prop_assert_eq!(people.iter().collect::<HashSet<_>>().len(), people.len());
+        }
+    }
+
+    #[test]
+    fn ways_through_the_world_carry_new_people_every_period() {
+        let links = [Some(Link { to: 1, laps: 2, shift: [0, 0] }), None];
+        let identities = Identities::new(&links);
+        assert_eq!(identities.of(0, [0, 0], 5), identities.of(1, [0, 0], 7));
+        assert_ne!(identities.of(0, [0, 0], 5), identities.of(0, [0, 0], 6));
+        assert_eq!((identities.cycles(), identities.people()), (1, 0));
+    }
+}

@@ -1,0 +1,67 @@
+//! Crowd patches: endless populated worlds from pieces of periodic animation.
+//!
+//! A *crowd patch* is a convex polygon with a period. *Patterns* on its edges say where, when and how fast people
+//! cross: two patches whose patterns mirror each other join without a seam. Inside, walkers are led from the inputs to
+//! the outputs so that nobody ever touches anybody or anything.
+//!
+//! ```
+//! use crowdquilt::world::{FramePatch, Limits, Options, PatternType, solve};
+//!
+//! // Four people in and four out over each border of a square of 8 m, every 10 s.
+//! let types = [const { PatternType::mixed(4, 4) }; 4];
+//! let frame = FramePatch::random_square(8.0, 10.0, &types, 1)?;
+//! let solution = solve(&frame, &Limits::default(), &Options { seed: 1, ..Options::default() })?;
+//! assert!(solution.ok());
+//! let place = solution.patch.walkers[0].path.position(2.5);
+//! assert!(place.is_finite());
+//! # Ok::<(), crowdquilt::Error>(())
+//! ```
+//!
+//! | file | what |
+//! |---|---|
+//! | `pattern.rs`, `spacing.rs`, `kinds.rs` | crossings on a border, their mirror image, how far apart they stay, types and random patterns |
+//! | `shape.rs`, `frame.rs`, `valid.rs`, `path.rs`, `patch.rs` | objects, the unsolved patch and what is wrong with it, a walker's curve, the solved patch |
+//! | `assign.rs`, `pairing.rs`, `route.rs` | which input leads to which output and when, on which side of the objects |
+//! | `solve/` | curves without collisions, within the limits of walking; the published particle method, to compare |
+//! | `identity.rs`, `lattice.rs` | who is who over all borders and periods, at any time; endless worlds |
+//! | `template.rs`, `plan.rs`, `furnish.rs` | what patches contain, which is where, the world that follows |
+//! | `stream.rs` | an endless world around a camera |
+//! | `scenes.rs`, `measure.rs` | the street and the city of the paper; how long patches take |
+
+mod assign;
+mod band;
+mod frame;
+mod furnish;
+mod identity;
+mod kinds;
+mod lattice;
+mod limits;
+mod measure;
+mod pairing;
+mod patch;
+mod path;
+mod pattern;
+mod plan;
+mod route;
+pub mod scenes;
+mod shape;
+mod solve;
+mod spacing;
+mod stream;
+mod template;
+mod valid;
+
+pub use frame::{Border, FramePatch, Standing, StaticObject};
+pub use identity::{Identities, Link, Person};
+pub use kinds::{Flow, PatternType, balance};
+pub use lattice::{Lattice, Sighting};
+pub use limits::Limits;
+pub use measure::{Creation, Walk, measure_creation, measure_walk};
+pub use patch::{CrowdPatch, Port, Walker};
+pub use path::Path;
+pub use pattern::{Crossing, Pattern, balanced};
+pub use plan::Plan;
+pub use shape::Shape;
+pub use solve::{Common, Method, Options, Solution, solve, vary};
+pub use stream::Stream;
+pub use template::{Amount, Furnishing, Gathering, Prototype, Template};

@@ -1,0 +1,234 @@
+//! Template maps: which template is where, and the world that follows from it.
+//!
+//! "Crowd Patches" (2009), sections 5.1 and 5.2. Every patch is a function of the plan, the seed and its place alone: patches
+//! can be made in any order, by any process, now or when a camera comes near, and are always the same.
+
+use glam::Vec2;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+use super::identity::mix;
+use super::lattice::rectangle;
+use super::{Common, CrowdPatch, FramePatch, Lattice, Limits, Options, Pattern, PatternType, Template, solve, vary};
+use crate::{Error, Result};
+
+/// Attempts to furnish and solve a patch; the last is without objects.
+const ATTEMPTS: u64 = 4;
+
+/// A map of templates on a grid of square cells.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plan {
+    /// The templates.
+    pub templates: Vec<Template>,
+    /// Template of every cell, row by row, the first row at z = 0; all rows are as long.
+    pub cells: Vec<Vec<usize>>,
+    /// Side of a cell, metres.
+    #[serde(default = "side")]
+    pub side: f32,
+    /// Period, seconds.
+    #[serde(default = "period")]
+    pub period: f32,
+    /// Whether the map repeats for ever in both directions; else nobody crosses its outer border.
+    #[serde(default)]
+    pub endless: bool,
+    /// How many patterns there are of each type; few make patches easier to share, many less alike.
+    #[serde(default = "patterns")]
+    pub patterns: u64,
+    /// Same seed, same world.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+fn side() -> f32 {
+    8.0
+}
+
+fn period() -> f32 {
+    10.0
+}
+
+fn patterns() -> u64 {
+    4
+}
+
+impl Plan {
+    /// A plan from lines of characters, the last line at z = 0 as on a map with z up, by a palette of characters and
+    /// templates. Other settings are the defaults.
+    ///
+    /// # Errors
+    /// If a character is not in the palette, or lines differ in length: names line and column.
+    pub fn from_text(map: &str, palette: Vec<(char, Template)>) -> Result<Self> {
+        let (keys, templates): (Vec<char>, Vec<Template>) = palette.into_iter().unzip();
+        let mut cells = Vec::new();
+        for (line, text) in map.lines().map(str::trim).filter(|l| !l.is_empty()).enumerate() {
+            let find = |(column, c): (usize, char)| {
+                keys.iter().position(|&k| k == c).ok_or_else(|| {
+                    let place = format!("line {}, column {}", line + 1, column + 1);
+                    Error::invalid("map", place, format!("expected one of {keys:?}, found {c:?}"))
+                })
+            };
+            cells.push(text.chars().enumerate().map(find).collect::<Result<Vec<usize>>>()?);
+        }
+        cells.reverse();
+        let plan =
+            Self { templates, cells, side: side(), period: period(), endless: false, patterns: patterns(), seed: 0 };
+        plan.validate()?;
+        Ok(plan)
+    }
+
+    /// Whether the plan makes sense.
+    ///
+    /// # Errors
+    /// Names the first cell, template or border that does not.
+    pub fn validate(&self) -> Result<()> {
+        let columns = self.cells.first().map_or(0, Vec::len);
+        if columns == 0 {
+            return Err(Error::invalid("map", "cells", "expected at least one cell, found none"));
+        }
+        for (row, cells) in self.cells.iter().enumerate() {
+            if cells.len() != columns {
+                let problem = format!("expected {columns} cells as in the first row, found {}", cells.len());
+                return Err(Error::invalid("map", format!("row {row}"), problem));
+            }
+            if let Some(bad) = cells.iter().find(|&&t| t >= self.templates.len()) {
+                let problem = format!("expected a template below {}, found {bad}", self.templates.len());
+                return Err(Error::invalid("map", format!("row {row}"), problem));
+            }
+        }
+        for template in &self.templates {
+            if let Some(problem) = template.problems().into_iter().next() {
+                return Err(Error::invalid("map", format!("template {:?}", template.name), problem));
+            }
+            let known = |name: &&String| self.templates.iter().any(|t| t.name == **name);
+            if let Some(name) = template.borders.keys().find(|name| !known(name)) {
+                let problem = format!("expected a border to one of the templates, found {name:?}");
+                return Err(Error::invalid("map", format!("template {:?}", template.name), problem));
+            }
+        }
+        Ok(())
+    }
+
+    /// Columns and rows.
+    pub fn size(&self) -> (usize, usize) {
+        (self.cells.first().map_or(0, Vec::len), self.cells.len())
+    }
+
+    /// The template at a column and row.
+    pub fn template(&self, column: usize, row: usize) -> &Template {
+        &self.templates[self.cells[row][column]]
+    }
+
+    /// Outline and patterns at a column and row, without objects.
+    ///
+    /// # Errors
+    /// If a pattern finds no room on its border.
+    pub fn frame(&self, column: usize, row: usize) -> Result<FramePatch> {
+        let (columns, rows) = self.size();
+        let (left, below) = ((column + columns - 1) % columns, (row + rows - 1) % rows);
+        let patterns = vec![
+            self.border(column, below, 2)?.mirror(),
+            self.border(column, row, 1)?,
+            self.border(column, row, 2)?,
+            self.border(left, row, 1)?.mirror(),
+        ];
+        Ok(FramePatch { outline: rectangle(Vec2::splat(self.side)), patterns, objects: Vec::new(), people: Vec::new() })
+    }
+
+    /// The pattern on the right (edge 1) or upper (edge 2) border of a cell, as the cell sees it.
+    fn border(&self, column: usize, row: usize, edge: usize) -> Result<Pattern> {
+        let (columns, rows) = self.size();
+        let outer = if edge == 1 { column + 1 == columns } else { row + 1 == rows };
+        let (right, above) = if edge == 1 { ((column + 1) % columns, row) } else { (column, (row + 1) % rows) };
+        let (here, there) = (self.cells[row][column], self.cells[above][right]);
+        let place = [edge, column, row].into_iter().fold(self.seed, |hash, part| mix(hash, part as u64));
+        match self.border_type(here.min(there), here.max(there)) {
+            Some(kind) if self.endless || !outer => {
+                // One of a few patterns of the type, as the template that comes first sees it.
+                let types = [here.min(there), here.max(there)].map(|index| index as u64);
+                let seed = [types[0], types[1], place % self.patterns.max(1)].into_iter().fold(self.seed, mix);
+                let mut rng = ChaCha8Rng::seed_from_u64(seed);
+                let pattern = kind.generate(self.side, self.period, &Limits::default(), &mut rng)?;
+                Ok(if here <= there { pattern } else { pattern.mirror() })
+            }
+            _ => Ok(Pattern::empty(self.side, self.period)),
+        }
+    }
+
+    /// Pattern type between two templates, as the first sees it.
+    fn border_type(&self, first: usize, second: usize) -> Option<PatternType> {
+        let [a, b] = [first, second].map(|index| &self.templates[index]);
+        a.borders.get(&b.name).copied().or_else(|| b.borders.get(&a.name).map(PatternType::mirror))
+    }
+
+    /// The solved patch at a column and row: a function of the plan and the place. Objects that leave no way through are
+    /// placed anew, and left out in the end.
+    ///
+    /// # Errors
+    /// If the patterns have no room, are not balanced, or no way is found even without objects.
+    pub fn patch(&self, column: usize, row: usize) -> Result<CrowdPatch> {
+        let bare = self.frame(column, row)?;
+        let place = mix(mix(self.seed, column as u64), row as u64);
+        let cell = || format!("column {column}, row {row}");
+        for attempt in 0..ATTEMPTS {
+            let frame = self.furnished(&bare, column, row, mix(place, attempt), attempt + 1 == ATTEMPTS);
+            let solution = solve(&frame, &Limits::default(), &self.options(place, attempt))
+                .map_err(|e| Error::invalid("map", cell(), e.to_string()))?;
+            if solution.ok() {
+                return Ok(solution.patch);
+            }
+        }
+        let template = &self.template(column, row).name;
+        Err(Error::invalid("map", cell(), format!("expected a way through every patch, found none for {template:?}")))
+    }
+
+    /// Another version of `patch` (of the cell at a column and row) for the `copy` of the map: objects and ways differ,
+    /// patterns and connections do not. A function of the plan and the place. `patch` itself if no version is found soon.
+    pub fn version(&self, patch: &CrowdPatch, column: usize, row: usize, copy: [i64; 2]) -> CrowdPatch {
+        if copy == [0, 0] || patch.walkers.is_empty() {
+            return patch.clone();
+        }
+        let place = [column as u64, row as u64, copy[0] as u64, copy[1] as u64].into_iter().fold(!self.seed, mix);
+        let mut bare = patch.frame.clone();
+        bare.objects.clear();
+        bare.people.clear();
+        for attempt in 0..3 {
+            // In the end other ways past the same objects will do.
+            let other = || self.furnished(&bare, column, row, mix(place, attempt), false);
+            let (frame, common) =
+                if attempt < 2 { (other(), Common::Connections) } else { (patch.frame.clone(), Common::State) };
+            let options = Options { restarts: 0, rounds: 3, ..self.options(place, attempt) };
+            let version = vary(patch, &frame, common, &Limits::default(), &options);
+            if let Some(version) = version.ok().filter(super::Solution::ok) {
+                return version.patch;
+            }
+        }
+        patch.clone()
+    }
+
+    fn furnished(&self, bare: &FramePatch, column: usize, row: usize, seed: u64, empty: bool) -> FramePatch {
+        let mut frame = bare.clone();
+        if !empty {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            self.template(column, row).furnish(&mut frame, &Limits::default(), &mut rng);
+        }
+        frame
+    }
+
+    fn options(&self, place: u64, attempt: u64) -> Options {
+        Options { seed: mix(place, !attempt), restarts: 12, ..Options::default() }
+    }
+
+    /// All patches, joined; on all cores, the result does not depend on their number.
+    ///
+    /// # Errors
+    /// As [`Self::patch`].
+    pub fn build(&self) -> Result<Lattice> {
+        self.validate()?;
+        let (columns, rows) = self.size();
+        let patches: Result<Vec<CrowdPatch>> =
+            (0..columns * rows).into_par_iter().map(|i| self.patch(i % columns, i / columns)).collect();
+        Lattice::new(columns, rows, Vec2::splat(self.side), patches?)
+    }
+}
