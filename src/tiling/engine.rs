@@ -18,7 +18,7 @@ use super::library::Library;
 use super::mend::{dissolve, mend, perform};
 use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
 use super::seed::seed_person;
-use super::tracks::Tracks;
+use super::tracks::{Tracks, Undo, Window};
 use super::{Scene, paper};
 use crate::patch::PatchSet;
 use crate::refine::Performance;
@@ -32,6 +32,10 @@ const LADEN_PATIENCE: usize = 60;
 const LADEN_EXPANSIONS: usize = 300;
 /// Failed tries in a row after which no further patch of several people is wished for.
 const ENRICH_PATIENCE: usize = 90_000;
+/// Failures in a row after which people are led other ways.
+const STIR_AFTER: usize = 15_000;
+/// Ticks before and after a piece that are then bridged anew.
+const STIR_TICKS: i32 = 45;
 /// The share is aimed at a little higher than wished for: mending may cost a patch or two.
 const ABOVE_WISH: f32 = 1.04;
 /// Largest share of the people's time in patches of several people that early rounds aim at.
@@ -219,6 +223,26 @@ fn enrich_to(tracks: &mut Tracks, wish: f32, taste: Taste, clock: &mut Clock, rn
             share = tracks.multi_person_share();
         } else {
             failures += 1;
+            if failures.is_multiple_of(STIR_AFTER) {
+                stir(tracks, taste, rng);
+            }
+        }
+    }
+}
+
+/// Leads everybody another way for some seconds, where there is one: new neighbours meet.
+fn stir(tracks: &mut Tracks, taste: Taste, rng: &mut ChaCha8Rng) {
+    for track in 0..tracks.tracks.len() {
+        let from = rng.random_range(0..tracks.tracks[track].len());
+        if tracks.people_of(tracks.tracks[track][from]) > 1 {
+            continue;
+        }
+        let mut undo = Undo::default();
+        let window = tracks.widen(Window { track, from, to: from + 1 }, STIR_TICKS);
+        tracks.hide_window(window, &mut undo);
+        match tracks.bridge_window(window, taste, rng, &mut undo) {
+            Some(()) => tracks.commit(undo),
+            None => tracks.roll_back(undo),
         }
     }
 }
