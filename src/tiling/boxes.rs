@@ -66,7 +66,8 @@ fn is_partner(chains: Chains, prop: &Prop, person: TrackId, tick: i32) -> bool {
 fn is_lifting(chains: Chains, prop: &Prop, person: TrackId, tick: i32) -> bool {
     let Some(piece) = chains.piece_at(person, tick) else { return false };
     let ends = prop.holds.iter().filter(|h| h.character as TrackId == person).flat_map(|h| [h.begin, h.end]);
-    piece.leaves_box()
+    // Asked of the role: one that begins at the first frame leaves no box lying before it.
+    chains.library.roles[piece.role as usize].leaves_box()
         && (lies_by(chains, prop, piece) || ends.into_iter().any(|f| (piece.begin..=piece.end).contains(&(f as i32))))
 }
 
