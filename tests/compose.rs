@@ -1,28 +1,19 @@
 //! Patches composed by hand out of the generated samples: what is said holds, and what cannot be is refused with its
 //! line.
 
-use std::path::Path;
-use std::sync::LazyLock;
+mod composing;
 
-use crowdquilt::check::{self, check};
-use crowdquilt::geom::{Ground, Polygon, wrap_angle};
+use std::path::Path;
+
+use composing::{SOURCES, crowd_with, edited, made, sample_set};
+use crowdquilt::check;
+use crowdquilt::geom::{Ground, wrap_angle};
 use crowdquilt::motion::contacts::palm;
-use crowdquilt::motion::{FPS, JOINT_COUNT, Motion, joint, retarget};
+use crowdquilt::motion::{FPS, JOINT_COUNT, Motion, joint};
 use crowdquilt::patch::compose::{add, compose};
-use crowdquilt::patch::{CutOptions, PatchKind, PatchSet, Source, cut, mirrored};
-use crowdquilt::tiling::{Options, Scene, Status, tile};
-use crowdquilt::{Result, samples};
+use crowdquilt::patch::{CutOptions, PatchKind, PatchSet, mirrored};
 use glam::Vec2;
 use proptest::prelude::*;
-
-static SOURCES: LazyLock<Vec<Source>> = LazyLock::new(|| {
-    let source = |take: samples::Take| Source {
-        origin: "sample".into(),
-        motions: retarget::take(&take.clips).unwrap(),
-        take: take.file,
-    };
-    samples::generate(1).into_iter().map(source).collect()
-});
 
 const MEET: &str = include_str!("../examples/compose/meet-and-bow.compose.toml");
 const ROWS: &str = include_str!("../examples/compose/rows-bow.compose.toml");
@@ -41,10 +32,6 @@ plays = ["walk", "slow"]
 name = "bob"
 plays = ["walk", "slow"]
 "#;
-
-fn made(text: &str) -> Result<PatchKind> {
-    compose(text, &SOURCES, &mut Vec::new())
-}
 
 /// Where one role stands seen from another at a frame of the patch's clock.
 fn seen(kind: &PatchKind, from: usize, who: usize, tick: u32) -> Ground {
@@ -335,19 +322,10 @@ proptest! {
         text in prop::sample::select(vec![MEET, ROWS, PUSH]),
         edits in prop::collection::vec((0.0f32..1.0, prop::sample::select(b"0123456789.-@[]\"= abe\n#".to_vec())), 1..4),
     ) {
-        let mut bytes = text.as_bytes().to_vec();
-        for (place, byte) in edits {
-            let at = (place * bytes.len() as f32) as usize;
-            bytes[at] = byte;
-        }
-        if let Err(error) = made(&String::from_utf8(bytes).unwrap()) {
+        if let Err(error) = made(&edited(text, &edits)) {
             prop_assert!(error.to_string().starts_with("compose file: line "), "{error}");
         }
     }
-}
-
-fn sample_set() -> PatchSet {
-    cut(&SOURCES, &CutOptions::default()).unwrap()
 }
 
 #[test]
@@ -372,24 +350,7 @@ fn compose_files_beside_others_join_the_set() {
 #[test]
 fn crowds_are_tiled_with_composed_patches() {
     for (text, people, share) in [(MEET, 14, 0.3), (PUSH, 12, 0.2), (ROWS, 20, 0.02)] {
-        let mut set = sample_set();
-        set.kinds.retain(|k| k.people() == 1);
-        let kind = compose(text, &SOURCES, &mut set.groups).unwrap();
-        let name = kind.name.clone();
-        set.kinds.push(kind);
-        assert!(set.validate().is_empty());
-        let scene = Scene {
-            region: Polygon::rectangle(Vec2::ZERO, Vec2::splat(10.0)),
-            characters: people,
-            duration_secs: 14.0,
-            interaction: share,
-            ..Scene::demo()
-        };
-        let options = Options { seed: 1, time_secs: 120.0, ..Options::default() };
-        let outcome = tile(&scene, &set, &options, &mut |_| true).unwrap();
-        let report = check(&outcome.crowd);
-        assert!(report.ok(), "{name}\n{report}");
-        assert_eq!(outcome.status, Status::Perfect, "{name}");
-        assert!(check::summary(&outcome.crowd).multi_person_share >= f64::from(share), "{name}");
+        let (crowd, name) = crowd_with(text, 10.0, people, 14.0, share);
+        assert!(check::summary(&crowd).multi_person_share >= f64::from(share), "{name}");
     }
 }

@@ -1,35 +1,19 @@
 //! Boxes in patches composed by hand out of the generated samples: carried, passed, put down and taken up, sat on.
 
-use std::sync::LazyLock;
+mod composing;
 
-use crowdquilt::check::{self, check};
-use crowdquilt::geom::{Cuboid, Polygon};
+use composing::{crowd_with, edited, made};
+use crowdquilt::geom::Cuboid;
+use crowdquilt::motion::body_capsules;
 use crowdquilt::motion::contacts::palm;
 use crowdquilt::motion::joint::{LEFT_HAND, RIGHT_HAND};
-use crowdquilt::motion::{body_capsules, retarget};
-use crowdquilt::patch::compose::compose;
-use crowdquilt::patch::{CutOptions, PatchKind, PatchProp, PatchSet, Source, cut};
-use crowdquilt::tiling::{Options, Scene, Status, tile};
-use crowdquilt::{Result, samples};
-use glam::{Quat, Vec2, Vec3};
+use crowdquilt::patch::{PatchKind, PatchProp};
+use glam::{Quat, Vec3};
 use proptest::prelude::*;
-
-static SOURCES: LazyLock<Vec<Source>> = LazyLock::new(|| {
-    let source = |take: samples::Take| Source {
-        origin: "sample".into(),
-        motions: retarget::take(&take.clips).unwrap(),
-        take: take.file,
-    };
-    samples::generate(1).into_iter().map(source).collect()
-});
 
 const CARRY: &str = include_str!("../examples/compose/carry-and-pass.compose.toml");
 const REST: &str = include_str!("../examples/compose/put-and-take.compose.toml");
 const SIT: &str = include_str!("../examples/compose/sit-on-box.compose.toml");
-
-fn made(text: &str) -> Result<PatchKind> {
-    compose(text, &SOURCES, &mut Vec::new())
-}
 
 fn joints(kind: &PatchKind, role: usize, clock: u32) -> Vec<(Vec3, Quat)> {
     let (fragment, mut globals) = (&kind.fragments[role], Vec::new());
@@ -165,29 +149,10 @@ fn hands_and_hips_far_from_a_box_are_refused() {
 
 #[test]
 fn crowds_are_tiled_with_them() {
-    for (text, people, interaction) in [(CARRY, 10, 0.15), (REST, 12, 0.005), (SIT, 10, 0.15)] {
-        let mut set: PatchSet = cut(&SOURCES, &CutOptions::default()).unwrap();
-        set.kinds.retain(|k| k.people() == 1);
-        let kind = compose(text, &SOURCES, &mut set.groups).unwrap();
-        let name = kind.name.clone();
-        set.kinds.push(kind);
-        assert!(set.validate().is_empty(), "{:?}", set.validate());
-        let scene = Scene {
-            region: Polygon::rectangle(Vec2::ZERO, Vec2::splat(11.0)),
-            characters: people,
-            duration_secs: 20.0,
-            interaction,
-            ..Scene::demo()
-        };
-        let options = Options { seed: if text == REST { 2 } else { 1 }, time_secs: 120.0, ..Options::default() };
-        let outcome = tile(&scene, &set, &options, &mut |_| true).unwrap();
-        let crowd = &outcome.crowd;
-        let report = check(crowd);
-        assert!(report.ok(), "{name}\n{report}");
-        assert_eq!(outcome.status, Status::Perfect, "{name}");
+    for (text, people, share) in [(CARRY, 10, 0.15), (REST, 12, 0.005), (SIT, 10, 0.15)] {
+        let (crowd, name) = crowd_with(text, 11.0, people, 20.0, share);
         let composed = crowd.instances.iter().filter(|i| crowd.set.kinds[i.kind as usize].name == name).count();
         assert!(composed >= 1 && !crowd.props.is_empty(), "{name}: {composed} instances");
-        assert!(check::summary(crowd).multi_person_share > 0.0);
     }
 }
 
@@ -199,12 +164,7 @@ proptest! {
         text in prop::sample::select(vec![CARRY, REST, SIT]),
         edits in prop::collection::vec((0.0f32..1.0, prop::sample::select(b"0123456789.-@[]\"= abe\n#".to_vec())), 1..4),
     ) {
-        let mut bytes = text.as_bytes().to_vec();
-        for (place, byte) in edits {
-            let at = (place * bytes.len() as f32) as usize;
-            bytes[at] = byte;
-        }
-        if let Err(error) = made(&String::from_utf8(bytes).unwrap()) {
+        if let Err(error) = made(&edited(text, &edits)) {
             prop_assert!(error.to_string().starts_with("compose file: line "), "{error}");
         }
     }
