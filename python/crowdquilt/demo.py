@@ -67,7 +67,8 @@ def summary(out: Path) -> tuple[dict[str, Any], list[str]]:
     data = json.loads((out / "report.json").read_text(encoding="utf-8"))
     held = sum(row["ok"] for row in data["check"])
     ends = "no loose end" if data["danglings"] == 0 else f"{data['danglings']} loose ends"
-    boxes = f", {data['props']} boxes" if data["props"] else ""
+    count = data["props"]
+    boxes = f", {count} {'box' if count == 1 else 'boxes'}" if count else ""
     lines = [
         f"{out} holds {data['characters']} people{boxes} for {data['seconds']:.0f} s: {data['instances']} patches of "
         f"{data['kinds']} kinds, {data['multi_person_share']:.0%} of the time together, {ends}.",
