@@ -23,24 +23,25 @@ pub(super) fn in_the_way(chains: Chains, played: &Performance, tick: i32) -> Vec
         played.props.iter().filter_map(|p| Some((p, p.at_frame(u32::try_from(tick).ok()?)?))).collect();
     let mut pairs = Vec::new();
     for (i, (prop, cuboid)) in here.iter().enumerate() {
-        let keeper = keeper(prop, tick).or_else(|| sitter(chains, prop));
+        // Looked for only where something is wrong.
+        let keeper = || keeper(prop, tick).or_else(|| sitter(chains, prop));
         for (t, body) in played.bodies.iter().enumerate() {
             if depth_in_body(cuboid, body, tick) > TOLERANCE && !is_partner(chains, prop, t, tick) {
                 // Where it lies, who runs into it is to go another way.
                 let held = prop.holders(tick as u32).next().is_some();
-                let other = keeper.filter(|_| held).unwrap_or(t);
+                let other = if held { keeper().unwrap_or(t) } else { t };
                 pairs.push((other.min(t), other.max(t)));
             }
         }
-        let Some(keeper) = keeper else { continue };
         if is_in_wall(cuboid, chains.domain) {
-            pairs.push((keeper, keeper));
+            pairs.extend(keeper().map(|k| (k, k)));
         }
         for (other, theirs) in &here[..i] {
             let near = cuboid.at.middle.distance(theirs.at.middle) < cuboid.radius() + theirs.radius();
             if near && cuboid.overlap(theirs) > TOLERANCE {
-                let second = self::keeper(other, tick).or_else(|| sitter(chains, other)).unwrap_or(keeper);
-                pairs.push((keeper.min(second), keeper.max(second)));
+                let Some(first) = keeper() else { continue };
+                let second = self::keeper(other, tick).or_else(|| sitter(chains, other)).unwrap_or(first);
+                pairs.push((first.min(second), first.max(second)));
             }
         }
     }

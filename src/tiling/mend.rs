@@ -14,7 +14,7 @@ use crate::patch::PatchKind;
 use crate::refine::{Body, Performance, Segment, refine, refine_all};
 use crate::stage::FragmentUse;
 
-/// Ticks ripped up before and after a fault, growing with each try.
+/// Windows around a fault are widened by multiples of this, ticks.
 const WINDOW: i32 = 24;
 /// Neighbours of the piece at fault among which a patch of several people is given up.
 const DISSOLVE_REACH: usize = 3;
