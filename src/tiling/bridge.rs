@@ -8,7 +8,7 @@ use std::collections::{BinaryHeap, HashSet};
 use rand::{Rng, RngExt};
 use rand_chacha::ChaCha8Rng;
 
-use super::domain::Domain;
+use super::domain::{Domain, Spot};
 use super::library::{Closing, Library, Move, Span};
 use super::occupancy::{Occupancy, Piece};
 use super::piece::Rigid;
@@ -221,7 +221,9 @@ impl Bridge {
             let place = from.at.position + turn.apply(step.to.position);
             let at = Ground::new(place, from.at.heading + step.to.heading);
             let at = Port { at, tick: from.tick + direction * step.ticks, group: step.group };
-            let inside = at.tick < 0 || at.tick > view.domain.horizon || view.domain.holds(at.at.position, WALL_ROOM);
+            let inside = at.tick < 0
+                || at.tick > view.domain.horizon
+                || view.domain.holds(Spot::ground(at.tick), at.at.position, WALL_ROOM);
             if !inside || self.seen.contains(&key(&at)) {
                 continue;
             }

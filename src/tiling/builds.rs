@@ -14,6 +14,7 @@ use rayon::prelude::*;
 
 use super::bake::{Chains, segments_of};
 use super::boxes::depth_in;
+use super::domain::Spot;
 use super::faults::is_rushed;
 use super::figure::{Figure, REACH, TOLERANCE, frame_at};
 use crate::geom::Cuboid;
@@ -86,11 +87,15 @@ impl<'a> Fitting<'a> {
 
     fn is_sound(&self, person: usize, body: &Body, build: &Build) -> bool {
         let Chains { library, domain, .. } = self.chains;
-        let near = |f: &usize| !domain.holds(Vec2::new(body.root[*f].x, body.root[*f].z), REACH);
-        let figure = |f: usize| Figure::of(body, &build.skeleton, (body.begin as usize + f) as i32);
+        let spot = |f: usize| Spot::ground(body.begin as i32 + f as i32);
+        let near = |f: &usize| !domain.holds(spot(*f), Vec2::new(body.root[*f].x, body.root[*f].z), REACH);
+        let figure = |f: usize| Some((f, Figure::of(body, &build.skeleton, (body.begin as usize + f) as i32)?));
         body.strained.len() <= self.bodies[person].strained.len()
             && !(0..body.root.len()).any(|f| is_rushed(body, library, f, RUSH))
-            && !(0..body.root.len()).filter(near).filter_map(figure).any(|figure| figure.is_in_wall(domain))
+            && !(0..body.root.len())
+                .filter(near)
+                .filter_map(figure)
+                .any(|(f, figure)| figure.is_in_wall(domain, spot(f).tick))
     }
 
     /// Those who change give way one step further.

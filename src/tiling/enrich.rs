@@ -9,6 +9,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::bridge::{Goal, Port, Taste, easy_closings};
+use super::domain::Spot;
 use super::library::Role;
 use super::occupancy::{Piece, PieceId};
 use super::tracks::{TrackId, Tracks, Undo, Window};
@@ -78,7 +79,9 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
     let mut near = Vec::new();
     for role in roles {
         let (mut entry, exit) = ports(tracks, role, world_from_patch, clock);
-        let room = |p: &Port| p.tick < 0 || p.tick > horizon || tracks.domain.holds(p.at.position, WALL_ROOM);
+        let room = |p: &Port| {
+            p.tick < 0 || p.tick > horizon || tracks.domain.holds(Spot::ground(p.tick), p.at.position, WALL_ROOM)
+        };
         if !room(&entry) || !room(&exit) {
             return None;
         }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::bake::Chains;
 use super::boxes::in_the_way;
-use super::domain::Domain;
+use super::domain::{Domain, Spot};
 use super::figure::{Figure, REACH, TOLERANCE, frame_at};
 use super::library::Library;
 use super::occupancy::Piece;
@@ -67,9 +67,9 @@ pub(super) fn first_unclean(body: &Body, chains: Chains, mut frames: Range<usize
 }
 
 fn is_in_wall(body: &Body, domain: &Domain, frame: usize) -> bool {
-    let root = body.root[frame];
-    !domain.holds(Vec2::new(root.x, root.z), REACH)
-        && Figure::of(body, canonical(), (body.begin as usize + frame) as i32).is_some_and(|f| f.is_in_wall(domain))
+    let (root, tick) = (body.root[frame], (body.begin as usize + frame) as i32);
+    !domain.holds(Spot::ground(tick), Vec2::new(root.x, root.z), REACH)
+        && Figure::of(body, canonical(), tick).is_some_and(|f| f.is_in_wall(domain, tick))
 }
 
 /// True if from the frame before a joint turns or the hips move `rush` times faster than in the captures.

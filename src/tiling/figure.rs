@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec2, Vec3};
 
-use super::domain::Domain;
+use super::domain::{Domain, Spot};
 use crate::geom::Capsule;
 use crate::motion::{Skeleton, body_capsules};
 use crate::refine::Body;
@@ -47,12 +47,15 @@ impl Figure {
         self.center.x - self.radius
     }
 
-    /// True if a limb is in a wall.
-    pub fn is_in_wall(&self, domain: &Domain) -> bool {
-        let inside = |p: Vec3, radius: f32| domain.holds(Vec2::new(p.x, p.z), radius - TOLERANCE);
+    /// True if a limb is in a wall or an obstacle at a tick.
+    pub fn is_in_wall(&self, domain: &Domain, tick: i32) -> bool {
+        let inside = |p: Vec3, radius: f32| {
+            let lift = p.y - radius + TOLERANCE;
+            domain.holds(Spot { tick, lift }, Vec2::new(p.x, p.z), radius - TOLERANCE)
+        };
         // Bones are so short that three discs each are as good as the whole.
         let free = |c: &Capsule| [0.0, 0.5, 1.0].into_iter().all(|t| inside(c.a.lerp(c.b, t), c.radius));
-        !domain.holds(self.center, self.radius) && !self.capsules.iter().all(free)
+        !domain.holds(Spot::ground(tick), self.center, self.radius) && !self.capsules.iter().all(free)
     }
 
     /// Depth of the deepest pair of capsules, metres; 0 if none touch.

@@ -4,7 +4,7 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use super::audition::plays_cleanly;
-use super::footprint::{Footprint, footprints, lying, reach};
+use super::footprint::{Footprint, Lifts, footprints, lying, reach};
 use crate::deform::{Limits, Strand};
 use crate::geom::{Ground, Turn, Upright};
 use crate::motion::{JOINT_COUNT, Motion, MotionPath};
@@ -50,6 +50,8 @@ pub(super) struct Role {
     pub hips_turns: Vec<f32>,
     /// Footprints per frame.
     pub footprints: Vec<Footprint>,
+    /// How high they are above the ground, per frame.
+    pub lifts: Vec<Lifts>,
     /// Radius of each footprint around the path point.
     pub reach: Vec<f32>,
     /// The box that lies there before the role takes it up, and the one after the role put it down.
@@ -224,7 +226,7 @@ fn prepare(set: &PatchSet, kind: u32, role: u32, limits: &Limits, fastest: &[f32
         points: source.points.iter().map(|&p| entry_from_patch.apply(p)).collect(),
         headings: source.headings.iter().map(|h| h - entry.heading).collect(),
     };
-    let footprints = footprints(&set.kinds[kind as usize], role, MARGIN);
+    let (footprints, lifts): (Vec<_>, Vec<_>) = footprints(&set.kinds[kind as usize], role, MARGIN).into_iter().unzip();
     Role {
         kind,
         role,
@@ -240,6 +242,7 @@ fn prepare(set: &PatchSet, kind: u32, role: u32, limits: &Limits, fastest: &[f32
         reach: footprints.iter().map(reach).collect(),
         rests: rests(&set.kinds[kind as usize], role),
         footprints,
+        lifts,
         path,
     }
 }

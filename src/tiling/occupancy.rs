@@ -2,13 +2,13 @@
 
 use std::ops::{ControlFlow, RangeInclusive};
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use super::bridge::NO_INSTANCE;
-use super::domain::Domain;
+use super::domain::{Domain, Spot};
 use super::footprint::Footprint;
 use super::library::Library;
-use super::piece::{Body, Rigid, footprint, overlap, world_discs};
+use super::piece::{Body, Rigid, footprint, lifts, overlap, world_discs};
 pub(super) use super::piece::{Piece, depth};
 
 /// Cell size of the grid in metres.
@@ -49,8 +49,11 @@ impl Player<'_> {
         world_discs(body, footprint(self.library, self.role, body))
     }
 
-    fn is_inside(self, domain: &Domain, body: &Body) -> bool {
-        domain.holds(body.position, body.reach) || self.discs(body).iter().all(|d| domain.holds(d.truncate(), d.z))
+    fn is_inside(self, domain: &Domain, tick: i32, body: &Body) -> bool {
+        let lifts = || lifts(self.library, self.role, body);
+        let holds = |(d, lift): (Vec3, f32)| domain.holds(Spot { tick, lift }, d.truncate(), d.z);
+        domain.holds(Spot::ground(tick), body.position, body.reach)
+            || self.discs(body).into_iter().zip(lifts()).all(holds)
     }
 }
 
@@ -169,7 +172,7 @@ impl Occupancy {
     fn is_clear(&self, domain: &Domain, player: Player, from: i32, n: usize, body: impl Fn(usize) -> Body) -> bool {
         let free = |i: usize| {
             let body = body(i);
-            player.is_inside(domain, &body)
+            player.is_inside(domain, from + i as i32, &body)
                 && self.meet(player, from + i as i32, &body, &mut |_| ControlFlow::Break(())).is_continue()
         };
         (0..n).step_by(8).all(free) && (4..n).step_by(8).all(free) && (0..n).filter(|i| i % 4 != 0).all(free)
@@ -178,7 +181,7 @@ impl Occupancy {
     /// The pieces whose bodies are in the way of `piece`, sorted; `None` if a wall or a crush is.
     pub fn blockers(&self, library: &Library, domain: &Domain, piece: &Piece) -> Option<Vec<PieceId>> {
         let player = Player { library, role: piece.role, instance: piece.instance };
-        if !piece.bodies.iter().all(|body| player.is_inside(domain, body)) {
+        if !(piece.shown_from..).zip(&piece.bodies).all(|(tick, body)| player.is_inside(domain, tick, body)) {
             return None;
         }
         let mut found = Vec::new();

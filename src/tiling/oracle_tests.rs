@@ -33,7 +33,7 @@ fn small_set() -> PatchSet {
 fn small_scene() -> Scene {
     Scene {
         region: Polygon::rectangle(Vec2::ZERO, Vec2::new(5.0, 4.0)),
-        obstacles: vec![Polygon::rectangle(Vec2::new(2.2, 1.6), Vec2::new(2.8, 2.4))],
+        obstacles: vec![Polygon::rectangle(Vec2::new(2.2, 1.6), Vec2::new(2.8, 2.4)).into()],
         duration_secs: 4.0,
         ..Scene::demo()
     }

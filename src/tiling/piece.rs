@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use super::domain::Domain;
-use super::footprint::{DISCS, Footprint};
+use super::footprint::{DISCS, Footprint, Lifts};
 use super::library::{Library, Role};
 use crate::geom::{Ground, Turn};
 use crate::motion::MotionPath;
@@ -206,6 +206,11 @@ pub(super) fn footprint<'a>(library: &'a Library, role: u32, body: &Body) -> &'a
         None => &role.footprints[body.frame as usize],
         Some(k) => &role.rests[k as usize].as_ref().expect("a box lies there").footprint,
     }
+}
+
+/// How high what each disc of a body covers is above the ground.
+pub(super) fn lifts(library: &Library, role: u32, body: &Body) -> Lifts {
+    library.roles[role as usize].lifts.get(body.frame as usize).copied().unwrap_or([0.0; DISCS])
 }
 
 /// The discs of a body in the world.
