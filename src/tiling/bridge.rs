@@ -291,9 +291,20 @@ impl Span {
 
 /// Number of strands that lead from one port to another with little deformation: how easy the bridge will be.
 pub(super) fn easy_closings(library: &Library, from: Port, to: Port) -> usize {
+    easy(library, from, to).count()
+}
+
+/// True if at least `wanted` strands do.
+pub(super) fn has_easy_closings(library: &Library, from: Port, to: Port, wanted: usize) -> bool {
+    easy(library, from, to).take(wanted).count() == wanted
+}
+
+fn easy<'a>(library: &'a Library, from: Port, to: Port) -> impl Iterator<Item = &'a Span> {
     let (left, way) = (to.tick - from.tick, from.at.inverse().then(to.at));
     let closings = library.closings_between(from.group, to.group);
-    closings.spans.iter().filter(|span| span.leads(way, left, EASY_REACH, EASY_TURN)).count()
+    let farthest = TOP_SPEED * left as f32 / FPS + SLACK;
+    let spans = if way.position.length_squared() > farthest * farthest { &[] } else { closings.spans.as_slice() };
+    spans.iter().filter(move |span| span.leads(way, left, EASY_REACH, EASY_TURN))
 }
 
 /// Cuts a deformed strand into the pieces of its roles, sharing out the ticks in proportion to the sources'; `None` if

@@ -27,24 +27,29 @@ use crate::patch::PatchSet;
 use crate::{Error, Result};
 
 /// Failed gatherings in a row after which people come alone.
-const GATHER_PATIENCE: usize = 400;
+const GATHER_PATIENCE: usize = 80;
 /// States expanded to lead people to and from where they meet.
 const GATHER_EXPANSIONS: usize = 300;
 /// Least and largest share of their time that people who stay together do so, about.
 const TOGETHER: [f32; 2] = [0.35, 0.85];
-/// The share, about, of people who only meet in passing.
-const PASSING: f32 = 0.15;
-/// Most gatherings in passing.
-const MOST_PASSING: f32 = 0.5;
 /// By how much more company is provided for than is needed: some gatherings do not get as far as they should.
-const RESERVE: f32 = 1.4;
+const RESERVE: f32 = 2.2;
+/// Part of the time asked for that people must spend together, and how that gives way where none are found.
+const LEAST: f32 = 0.7;
+const INDULGENCE: f32 = 0.97;
+/// Where those to come would have to be together for more than this share of their time, no more are gathered.
+const HOPELESS: f32 = 0.7;
+/// Kinds drawn until one is taken.
+const DRAWS: usize = 200;
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 4000;
 /// Every so many people one is wished for who begins with a box in the hands, for so many tries.
 const LADEN_EVERY: usize = 20;
 const LADEN_PATIENCE: usize = 60;
 const LADEN_EXPANSIONS: usize = 300;
-/// Failed tries per person in a row after which no further patch of several people is wished for.
+/// Failed tries per person in a row after which no further patch of several people is wished for: before all people are
+/// there, and at the end.
+const FIRST_PATIENCE: usize = 20;
 const ENRICH_PATIENCE: usize = 80;
 /// Failures per person in a row after which people are led other ways.
 const STIR_AFTER: usize = 14;
@@ -166,9 +171,15 @@ fn engine(
     let taste = Taste { calm: calm(scene), expansions: 60 };
     let mut engine = Engine { scene, crew, taste, clock };
     engine.gather();
+    engine.tell("gather");
+    engine.enrich(FIRST_PATIENCE);
+    engine.tell("enrich");
     engine.seed();
-    engine.enrich();
+    engine.tell("seed");
+    engine.enrich(ENRICH_PATIENCE);
+    engine.tell("enrich");
     let Rehearsal { played, faults, .. } = engine.finish();
+    engine.tell("finish");
     let Engine { crew, clock, .. } = engine;
     let status = status(crew.tracks.chains(), scene, faults.len());
     let crowd = bake(crew.tracks.chains(), scene, options.seed, played);
@@ -203,6 +214,8 @@ struct Engine<'a> {
 }
 
 impl Engine<'_> {
+    fn tell(&self, what: &str) { if std::env::var("V").is_ok() { let t = &self.crew.tracks; eprintln!("{:.2} {what}: {} people, {:.3} of {:.3}", self.clock.secs(), t.tracks.len(), t.company() as f32, self.company_wish()); } }
+
     fn goes_on(&mut self, phase: Phase) -> bool {
         let tracks = &self.crew.tracks;
         self.clock.goes_on(|| state(tracks, phase))
@@ -227,14 +240,17 @@ impl Engine<'_> {
         }
         let encores = Encores::new(library);
         let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
-        let mut failures = 0;
+        let (mut failures, mut standard) = (0, 1.0);
         while self.crew.tracks.company() < wish && failures < GATHER_PATIENCE && self.goes_on(Phase::Seed) {
             let (left, tracks) = (self.people_left(), &self.crew.tracks);
             if left < 2 {
                 break;
             }
             let need = (wish - tracks.company()) as f32 / (left * tracks.domain.horizon as usize) as f32;
-            let plan = Plan { encores: &encores, horizon: tracks.domain.horizon, need };
+            if need > HOPELESS {
+                break;
+            }
+            let plan = Plan { encores: &encores, horizon: tracks.domain.horizon, need, standard };
             let count = self.crew.batch.min(left.div_ceil(2));
             let made = self.crew.work(
                 count,
@@ -242,6 +258,8 @@ impl Engine<'_> {
                 |tracks, change| tracks.tracks.len() + change.newcomers() <= most && tracks.company() < wish,
             );
             failures = if made > 0 { 0 } else { failures + count };
+            standard *= if made > 0 { 1.0 } else { INDULGENCE };
+            if std::env::var("V").is_ok_and(|v| v == "2") { self.tell(&format!("made {made} of {count}, need {need:.2}")); }
         }
     }
 
@@ -266,14 +284,14 @@ impl Engine<'_> {
 
     /// Adds patches of several people until there is as much company as wished for: once through time from its
     /// beginning, when what comes after is free, then wherever there is room.
-    fn enrich(&mut self) {
+    fn enrich(&mut self, patience: usize) {
         let (people, last) = (self.crew.tracks.tracks.len(), self.crew.tracks.domain.horizon - SWEEP_TICKS / 2);
         if self.crew.tracks.library.multi.is_empty() || people == 0 {
             return;
         }
         let (wish, tries, taste) = (self.company_wish(), SWEEP_TRIES * people, self.taste);
         let (mut done, mut failures, mut since_stir) = (0, 0, 0);
-        while self.crew.tracks.company() < wish && failures < ENRICH_PATIENCE * people && self.goes_on(Phase::Enrich) {
+        while self.crew.tracks.company() < wish && failures < patience * people && self.goes_on(Phase::Enrich) {
             let ticks = |i: usize| match (done + i) * last as usize / tries {
                 tick if tick < last as usize => tick as i32..(tick as i32 + SWEEP_TICKS).min(last),
                 _ => 0..last,
@@ -296,18 +314,20 @@ impl Engine<'_> {
     /// Mends, and where that cost more patches of several people than it may, puts new ones in and mends again.
     fn finish(&mut self) -> Rehearsal {
         let mut rehearsal = Rehearsal::new(&self.crew.tracks);
+        self.tell(&format!("rehearsed {}", rehearsal.faults.len()));
         self.mend(&mut rehearsal);
         for _ in 0..REFILLS {
             let share = self.crew.tracks.multi_person_share();
             if share >= self.scene.interaction || !rehearsal.faults.is_empty() {
                 break;
             }
-            self.enrich();
+            // People may have been led other ways even if no patch found room.
+            self.enrich(ENRICH_PATIENCE);
+            rehearsal.repeat(&self.crew.tracks);
+            self.mend(&mut rehearsal);
             if self.crew.tracks.multi_person_share() <= share {
                 break;
             }
-            rehearsal.repeat(&self.crew.tracks);
-            self.mend(&mut rehearsal);
         }
         rehearsal
     }
@@ -327,6 +347,7 @@ impl Engine<'_> {
             };
             self.crew.work(faults.len(), propose, |_, _| true);
             rehearsal.repeat(&self.crew.tracks);
+            self.tell(&format!("mended to {}", rehearsal.faults.len()));
         }
     }
 }
@@ -337,25 +358,33 @@ struct Plan<'a> {
     horizon: i32,
     /// Share of their time that those who are still to come must spend together on average.
     need: f32,
+    /// The part of what is asked of a gathering that it must at least come to.
+    standard: f32,
 }
 
 impl Plan<'_> {
-    /// Some in passing, others of people who stay together: more of these the more company is needed.
+    /// Kinds whose people cannot spend as much time together as is needed are drawn the more seldom.
     fn draw(&self, library: &Library, rng: &mut ChaCha8Rng) -> Wish {
-        let [least, most] = TOGETHER;
-        let average = 0.5 * (least + most);
-        let in_passing = ((average - RESERVE * self.need) / (average - PASSING)).clamp(0.0, MOST_PASSING);
-        let sociable = rng.random_range(0.0..1.0) >= in_passing;
-        let of_sort: Vec<u32> =
-            library.multi.iter().copied().filter(|&k| self.encores.is_sociable(k) == sociable).collect();
-        let kinds = if of_sort.is_empty() { &library.multi } else { &of_sort };
-        let kind = kinds[rng.random_range(0..kinds.len())];
+        let enough = RESERVE * self.need;
+        let draw = |rng: &mut ChaCha8Rng| {
+            let kind = library.multi[rng.random_range(0..library.multi.len())];
+            let chance = self.potential(library, kind) / enough;
+            (rng.random_range(0.0..1.0) < chance * chance).then_some(kind)
+        };
+        let kind = (0..DRAWS).find_map(|_| draw(rng)).unwrap_or(library.multi[0]);
         if !self.encores.is_sociable(kind) {
             return Wish { kind, together: 0, least: 0 };
         }
+        let [least, most] = TOGETHER;
         let least = least.max(self.need.min(most));
         let ticks = |share: f32| (share * self.horizon as f32) as i32;
-        Wish { kind, together: ticks(rng.random_range(least..=most)), least: ticks(least * 0.7) }
+        Wish { kind, together: ticks(rng.random_range(least..=most)), least: ticks(least * LEAST * self.standard) }
+    }
+
+    /// The share of their time that people whose first patch is of a kind may spend together.
+    fn potential(&self, library: &Library, kind: u32) -> f32 {
+        let own = library.roles[library.first_role[kind as usize] as usize].ticks as f32 / self.horizon as f32;
+        if self.encores.is_sociable(kind) { own.max(0.5 * (TOGETHER[0] + TOGETHER[1])) } else { own }
     }
 }
 
