@@ -16,6 +16,7 @@ use super::domain::Domain;
 use super::draft::Draft;
 use super::enrich::enrich;
 use super::gather::{Encores, Wish, gather};
+use super::plan::Plan;
 use super::library::Library;
 use super::mend::{dissolve, mend};
 use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
@@ -30,17 +31,8 @@ use crate::{Error, Result};
 const GATHER_PATIENCE: usize = 80;
 /// States expanded to lead people to and from where they meet.
 const GATHER_EXPANSIONS: usize = 300;
-/// Least and largest share of their time that people who stay together do so, about.
-const TOGETHER: [f32; 2] = [0.35, 0.85];
-/// By how much more company is provided for than is needed: some gatherings do not get as far as they should.
-const RESERVE: f32 = 2.2;
-/// Part of the time asked for that people must spend together, and how that gives way where none are found.
-const LEAST: f32 = 0.7;
-const INDULGENCE: f32 = 0.97;
 /// Where those to come would have to be together for more than this share of their time, no more are gathered.
 const HOPELESS: f32 = 0.7;
-/// Kinds drawn until one is taken.
-const DRAWS: usize = 200;
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 4000;
 /// Every so many people one is wished for who begins with a box in the hands, for so many tries.
@@ -49,7 +41,7 @@ const LADEN_PATIENCE: usize = 60;
 const LADEN_EXPANSIONS: usize = 300;
 /// Failed tries per person in a row after which no further patch of several people is wished for: before all people are
 /// there, and at the end.
-const FIRST_PATIENCE: usize = 20;
+const FIRST_PATIENCE: usize = 40;
 const ENRICH_PATIENCE: usize = 80;
 /// Failures per person in a row after which people are led other ways.
 const STIR_AFTER: usize = 14;
@@ -239,27 +231,23 @@ impl Engine<'_> {
             return;
         }
         let encores = Encores::new(library);
+        let mut plan = Plan::new(library, &encores, self.crew.tracks.domain.horizon, self.crew.seed);
         let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
-        let (mut failures, mut standard) = (0, 1.0);
+        let mut failures = 0;
         while self.crew.tracks.company() < wish && failures < GATHER_PATIENCE && self.goes_on(Phase::Seed) {
             let (left, tracks) = (self.people_left(), &self.crew.tracks);
-            if left < 2 {
+            let need = wish.saturating_sub(tracks.company()) as f32 / (left * tracks.domain.horizon as usize) as f32;
+            if left < 2 || need > HOPELESS {
                 break;
             }
-            let need = (wish - tracks.company()) as f32 / (left * tracks.domain.horizon as usize) as f32;
-            if need > HOPELESS {
-                break;
-            }
-            let plan = Plan { encores: &encores, horizon: tracks.domain.horizon, need, standard };
-            let count = self.crew.batch.min(left.div_ceil(2));
+            let wishes: Vec<Wish> = (0..self.crew.batch.min(left.div_ceil(2))).map(|_| plan.draw(need)).collect();
             let made = self.crew.work(
-                count,
-                |_, draft, rng| gather(draft, &encores, plan.draw(library, rng), taste, rng),
+                wishes.len(),
+                |i, draft, rng| gather(draft, &encores, wishes[i], taste, rng),
                 |tracks, change| tracks.tracks.len() + change.newcomers() <= most && tracks.company() < wish,
             );
-            failures = if made > 0 { 0 } else { failures + count };
-            standard *= if made > 0 { 1.0 } else { INDULGENCE };
-            if std::env::var("V").is_ok_and(|v| v == "2") { self.tell(&format!("made {made} of {count}, need {need:.2}")); }
+            plan.learn(&wishes, &made);
+            failures = if made.contains(&true) { 0 } else { failures + made.len() };
         }
     }
 
@@ -278,7 +266,7 @@ impl Engine<'_> {
                 |_, draft, rng| seed_person(draft, laden, taste, rng),
                 |tracks, _| tracks.tracks.len() < most,
             );
-            failures = if made > 0 { 0 } else { failures + count };
+            failures = if made.contains(&true) { 0 } else { failures + count };
         }
     }
 
@@ -303,7 +291,7 @@ impl Engine<'_> {
                 |tracks, _| tracks.company() < wish,
             );
             done += count;
-            (failures, since_stir) = if made > 0 { (0, 0) } else { (failures + count, since_stir + count) };
+            (failures, since_stir) = if made.contains(&true) { (0, 0) } else { (failures + count, since_stir + count) };
             if since_stir > STIR_AFTER * people {
                 since_stir = 0;
                 self.crew.work(people, |track, draft, rng| stir(draft, track, taste, rng), |_, _| true);
@@ -349,42 +337,6 @@ impl Engine<'_> {
             rehearsal.repeat(&self.crew.tracks);
             self.tell(&format!("mended to {}", rehearsal.faults.len()));
         }
-    }
-}
-
-/// What gatherings are to be like.
-struct Plan<'a> {
-    encores: &'a Encores,
-    horizon: i32,
-    /// Share of their time that those who are still to come must spend together on average.
-    need: f32,
-    /// The part of what is asked of a gathering that it must at least come to.
-    standard: f32,
-}
-
-impl Plan<'_> {
-    /// Kinds whose people cannot spend as much time together as is needed are drawn the more seldom.
-    fn draw(&self, library: &Library, rng: &mut ChaCha8Rng) -> Wish {
-        let enough = RESERVE * self.need;
-        let draw = |rng: &mut ChaCha8Rng| {
-            let kind = library.multi[rng.random_range(0..library.multi.len())];
-            let chance = self.potential(library, kind) / enough;
-            (rng.random_range(0.0..1.0) < chance * chance).then_some(kind)
-        };
-        let kind = (0..DRAWS).find_map(|_| draw(rng)).unwrap_or(library.multi[0]);
-        if !self.encores.is_sociable(kind) {
-            return Wish { kind, together: 0, least: 0 };
-        }
-        let [least, most] = TOGETHER;
-        let least = least.max(self.need.min(most));
-        let ticks = |share: f32| (share * self.horizon as f32) as i32;
-        Wish { kind, together: ticks(rng.random_range(least..=most)), least: ticks(least * LEAST * self.standard) }
-    }
-
-    /// The share of their time that people whose first patch is of a kind may spend together.
-    fn potential(&self, library: &Library, kind: u32) -> f32 {
-        let own = library.roles[library.first_role[kind as usize] as usize].ticks as f32 / self.horizon as f32;
-        if self.encores.is_sociable(kind) { own.max(0.5 * (TOGETHER[0] + TOGETHER[1])) } else { own }
     }
 }
 

@@ -20,6 +20,7 @@ mod occupancy;
 mod outcome;
 mod paper;
 mod piece;
+mod plan;
 mod rehearsal;
 mod scene;
 mod seed;
