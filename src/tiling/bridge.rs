@@ -11,7 +11,7 @@ use rustc_hash::FxHashSet;
 
 use super::domain::Spot;
 use super::library::{Closing, Library, Move, Span};
-use super::piece::{Piece, Rigid};
+use super::piece::{Company, Piece, Rigid};
 use super::view::View;
 use crate::geom::{Ground, wrap_angle};
 use crate::motion::{FPS, MotionPath};
@@ -104,27 +104,42 @@ impl Ord for Entry {
 }
 
 /// The search with its reusable buffers.
-#[derive(Default)]
 pub(super) struct Bridge {
     nodes: Vec<Node>,
     heap: BinaryHeap<Entry>,
     seen: FxHashSet<u64>,
     backward: bool,
+    company: Company,
     path: MotionPath,
+}
+
+impl Default for Bridge {
+    fn default() -> Self {
+        Self {
+            nodes: vec![],
+            heap: BinaryHeap::new(),
+            seen: FxHashSet::default(),
+            backward: false,
+            company: Company::NONE,
+            path: MotionPath::default(),
+        }
+    }
 }
 
 impl Bridge {
     /// A chain of free pieces, in order of time, from `from` to `goal`; `None` if none was found in `taste.expansions`.
     ///
-    /// Time O(expansions x moves x frames).
+    /// `company` has the patches of several people that the chain leads from and to. Time O(expansions x moves x frames).
     pub fn search(
         &mut self,
         view: View,
         from: Port,
         goal: Goal,
+        company: Company,
         taste: Taste,
         rng: &mut ChaCha8Rng,
     ) -> Option<Vec<Piece>> {
+        self.company = company;
         self.nodes.clear();
         self.heap.clear();
         self.seen.clear();
@@ -174,7 +189,20 @@ impl Bridge {
 
     fn piece(&self, view: View, node: u32) -> Piece {
         let (entry, begin) = self.entry(node);
-        Piece::rigid(view.library, view.domain, self.nodes[node as usize].role, NO_INSTANCE, entry, begin)
+        let role = self.nodes[node as usize].role;
+        Piece {
+            company: self.company_of(node),
+            ..Piece::rigid(view.library, view.domain, role, NO_INSTANCE, entry, begin)
+        }
+    }
+
+    /// The patches that a node's patch leads from and to: only the one next to where the search began is known.
+    fn company_of(&self, node: u32) -> Company {
+        match (self.nodes[node as usize].parent, self.backward) {
+            (0, false) => Company { to: NO_INSTANCE, ..self.company },
+            (0, true) => Company { from: NO_INSTANCE, ..self.company },
+            _ => Company::NONE,
+        }
     }
 
     /// True if the patch that leads to a node is in nobody's way.
@@ -185,7 +213,7 @@ impl Bridge {
         }
         let leaves_box = view.library.roles[role as usize].leaves_box();
         let (entry, begin) = self.entry(node);
-        if !leaves_box && !view.is_free_rigid(role, Rigid::new(view.library, role, entry, begin)) {
+        if !leaves_box && !view.is_free_rigid(role, Rigid::new(view.library, role, entry, begin), self.company_of(node)) {
             return false;
         }
         if !boxed {
@@ -259,7 +287,11 @@ impl Bridge {
         if !closing.strand.deform(from.at, to.at, &view.library.limits, &mut self.path) {
             return None;
         }
-        let pieces = split(view, closing, &self.path, from.tick, to.tick)?;
+        let mut pieces = split(view, closing, &self.path, from.tick, to.tick)?;
+        if node == 0 {
+            pieces[0].company.from = self.company.from;
+        }
+        pieces.last_mut()?.company.to = self.company.to;
         let free = |p: &Piece| view.is_free(p) && !(boxed && self.meets_own_way(view, node, p));
         pieces.iter().all(free).then_some(pieces)
     }

@@ -14,7 +14,7 @@ use super::domain::Spot;
 use super::draft::Draft;
 use super::library::Library;
 use super::occupancy::PieceId;
-use super::piece::Rigid;
+use super::piece::{Company, Rigid};
 use crate::geom::Ground;
 
 /// Places tried for a first patch.
@@ -136,6 +136,8 @@ struct Life {
     pieces: Vec<PieceId>,
     begin: Port,
     end: Port,
+    /// The first and the last patch of several people.
+    company: Company,
 }
 
 /// Adds people who meet as wished, each present over the whole time.
@@ -148,14 +150,16 @@ pub(super) fn gather(
 ) -> Option<()> {
     let first = (0..PLACES).find_map(|_| place(draft, wish, rng))?;
     let horizon = draft.base.domain.horizon;
-    let mut together = company(&first, horizon);
+    let mut together = time_together(&first, horizon);
     let ids = draft.add_patch(first.iter().map(|p| (p.role, p.entry)))?;
-    let life = |(p, id): (&Part, PieceId)| Life { pieces: vec![id], begin: p.entry, end: p.exit };
+    let here = draft.piece(ids[0]).instance;
+    let company = Company { from: here, to: here };
+    let life = |(p, id): (&Part, PieceId)| Life { pieces: vec![id], begin: p.entry, end: p.exit, company };
     let mut lives: Vec<Life> = first.iter().zip(ids).map(life).collect();
     let mut kind = wish.kind;
     while together < wish.together && lives.iter().all(|l| l.end.tick < horizon - SEEN) {
         let Some((next, parts)) = go_on(draft, &mut lives, &encores.0[kind as usize], taste, rng) else { break };
-        together += company(&parts, horizon);
+        together += time_together(&parts, horizon);
         kind = next;
     }
     if together < wish.least {
@@ -172,7 +176,7 @@ pub(super) fn gather(
 }
 
 /// Ticks of a patch within the domain's time, on average over its people.
-fn company(parts: &[Part], horizon: i32) -> i32 {
+fn time_together(parts: &[Part], horizon: i32) -> i32 {
     let ticks = |p: &Part| p.exit.tick.clamp(0, horizon) - p.entry.tick.clamp(0, horizon);
     parts.iter().map(ticks).sum::<i32>() / parts.len() as i32
 }
@@ -193,9 +197,10 @@ fn is_free(draft: &Draft, parts: &[Part]) -> bool {
     let (library, domain) = (draft.base.library, draft.base.domain);
     let outside = |tick: i32| tick < 0 || tick > domain.horizon;
     let room = |p: &Port| outside(p.tick) || domain.holds(Spot::ground(p.tick), p.at.position, WALL_ROOM);
+    let rigid = |p: &Part| Rigid::new(library, p.role, p.entry.at, p.entry.tick);
     let view = draft.view();
     parts.iter().all(|p| room(&p.entry) && room(&p.exit))
-        && parts.iter().all(|p| view.is_free_rigid(p.role, Rigid::new(library, p.role, p.entry.at, p.entry.tick)))
+        && parts.iter().all(|p| view.is_free_rigid(p.role, rigid(p), Company::NONE))
 }
 
 /// Leads the people from where they are into another patch together; its kind and parts.
@@ -220,12 +225,13 @@ fn go_on(
             continue;
         }
         let mark = draft.mark();
-        if let Some(ways) = join(draft, &parts, from, taste, rng) {
+        if let Some(ways) = join(draft, &parts, from, lives[0].company.to, taste, rng) {
+            let here = draft.piece(ways[0][ways[0].len() - 1]).instance;
             // In the order of the roles that they play now.
             lives.rotate_left(encore.first as usize);
             for (life, (way, part)) in lives.iter_mut().zip(ways.into_iter().zip(&parts)) {
                 life.pieces.extend(way);
-                life.end = part.exit;
+                (life.end, life.company.to) = (part.exit, here);
             }
             return Some((encore.kind, parts));
         }
@@ -243,12 +249,14 @@ fn join(
     draft: &mut Draft,
     parts: &[Part],
     from: impl Fn(usize) -> Port,
+    before: u32,
     taste: Taste,
     rng: &mut ChaCha8Rng,
 ) -> Option<Vec<Vec<PieceId>>> {
     let ids = draft.add_patch(parts.iter().map(|p| (p.role, p.entry)))?;
+    let company = Company { from: before, to: draft.piece(ids[0]).instance };
     let mut lead = |(k, part): (usize, &Part)| {
-        let mut way = draft.search(from(k), Goal::Port(part.entry), taste, rng)?;
+        let mut way = draft.search(from(k), Goal::Port(part.entry), company, taste, rng)?;
         way.push(ids[k]);
         Some(way)
     };
@@ -258,7 +266,8 @@ fn join(
 /// Leads somebody from the beginning of time to their first patch.
 fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     if life.begin.tick > 0 {
-        let way = (0..TRIES).find_map(|_| draft.search(life.begin, Goal::Since(0), taste, rng))?;
+        let company = Company { to: life.company.from, ..Company::NONE };
+        let way = (0..TRIES).find_map(|_| draft.search(life.begin, Goal::Since(0), company, taste, rng))?;
         life.pieces.splice(..0, way);
     }
     Some(())
@@ -268,7 +277,8 @@ fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) 
 fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let horizon = draft.base.domain.horizon;
     if life.end.tick < horizon {
-        let way = (0..TRIES).find_map(|_| draft.search(life.end, Goal::Until(horizon), taste, rng))?;
+        let company = Company { from: life.company.to, ..Company::NONE };
+        let way = (0..TRIES).find_map(|_| draft.search(life.end, Goal::Until(horizon), company, taste, rng))?;
         life.pieces.extend(way);
     }
     Some(())
