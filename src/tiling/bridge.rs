@@ -213,7 +213,8 @@ impl Bridge {
         }
         let leaves_box = view.library.roles[role as usize].leaves_box();
         let (entry, begin) = self.entry(node);
-        if !leaves_box && !view.is_free_rigid(role, Rigid::new(view.library, role, entry, begin), self.company_of(node)) {
+        if !leaves_box && !view.is_free_rigid(role, Rigid::new(view.library, role, entry, begin), self.company_of(node))
+        {
             return false;
         }
         if !boxed {

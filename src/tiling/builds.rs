@@ -131,11 +131,17 @@ impl<'a> Fitting<'a> {
         let at_tick = |tick: i32| -> Vec<(usize, usize)> {
             let mut pairs = Vec::new();
             let bodies = self.worn.iter().map(|w| &w.body);
-            pairs_at(tick, bodies, changed, |p| self.figure(p, tick), |(p, a), (q, b)| {
-                if self.is_clash((p, a), (q, b), tick) {
-                    pairs.push((p.min(q), p.max(q)));
-                }
-            });
+            pairs_at(
+                tick,
+                bodies,
+                changed,
+                |p| self.figure(p, tick),
+                |(p, a), (q, b)| {
+                    if self.is_clash((p, a), (q, b), tick) {
+                        pairs.push((p.min(q), p.max(q)));
+                    }
+                },
+            );
             pairs
         };
         let horizon = self.chains.domain.horizon;

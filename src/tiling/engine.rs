@@ -16,10 +16,10 @@ use super::domain::Domain;
 use super::draft::Draft;
 use super::enrich::enrich;
 use super::gather::{Encores, Wish, gather};
-use super::plan::Plan;
 use super::library::Library;
 use super::mend::{dissolve, mend};
 use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
+use super::plan::Plan;
 use super::rehearsal::Rehearsal;
 use super::seed::seed_person;
 use super::tracks::{Tracks, Window};
@@ -206,7 +206,18 @@ struct Engine<'a> {
 }
 
 impl Engine<'_> {
-    fn tell(&self, what: &str) { if std::env::var("V").is_ok() { let t = &self.crew.tracks; eprintln!("{:.2} {what}: {} people, {:.3} of {:.3}", self.clock.secs(), t.tracks.len(), t.company() as f32, self.company_wish()); } }
+    fn tell(&self, what: &str) {
+        if std::env::var("V").is_ok() {
+            let t = &self.crew.tracks;
+            eprintln!(
+                "{:.2} {what}: {} people, {:.3} of {:.3}",
+                self.clock.secs(),
+                t.tracks.len(),
+                t.company() as f32,
+                self.company_wish()
+            );
+        }
+    }
 
     fn goes_on(&mut self, phase: Phase) -> bool {
         let tracks = &self.crew.tracks;

@@ -29,8 +29,6 @@ const SAMPLES: usize = 16;
 const ENOUGH: usize = 3;
 /// A way that this many closings lead along is easy.
 const EASY: usize = 2;
-/// Searches for somebody's way to the end of time.
-const TRIES: usize = 3;
 /// Room that the ends of a patch must have to walls, metres.
 const WALL_ROOM: f32 = 0.4;
 /// Ticks of the first patch that are seen at least.
@@ -184,7 +182,8 @@ fn time_together(parts: &[Part], horizon: i32) -> i32 {
 /// The first patch at some place and time that leaves room for what is to follow, if it is free there.
 fn place(draft: &Draft, wish: Wish, rng: &mut ChaCha8Rng) -> Option<Vec<Part>> {
     let (library, domain) = (draft.base.library, draft.base.domain);
-    let position = Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
+    let position =
+        Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
     let world_from_patch = Ground::new(position, rng.random_range(-PI..PI));
     let longest = library.roles_of(wish.kind).map(|r| library.roles[r as usize].ticks).max()?;
     let earliest = SEEN - longest;
@@ -267,7 +266,7 @@ fn join(
 fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     if life.begin.tick > 0 {
         let company = Company { to: life.company.from, ..Company::NONE };
-        let way = (0..TRIES).find_map(|_| draft.search(life.begin, Goal::Since(0), company, taste, rng))?;
+        let way = lead(draft, life.begin, Goal::Since(0), company, taste, rng)?;
         life.pieces.splice(..0, way);
     }
     Some(())
@@ -278,8 +277,20 @@ fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) 
     let horizon = draft.base.domain.horizon;
     if life.end.tick < horizon {
         let company = Company { from: life.company.to, ..Company::NONE };
-        let way = (0..TRIES).find_map(|_| draft.search(life.end, Goal::Until(horizon), company, taste, rng))?;
-        life.pieces.extend(way);
+        life.pieces.extend(lead(draft, life.end, Goal::Until(horizon), company, taste, rng)?);
     }
     Some(())
+}
+
+/// A way that keeps clear of those who are met, or at least of everybody else.
+fn lead(
+    draft: &mut Draft,
+    from: Port,
+    goal: Goal,
+    company: Company,
+    taste: Taste,
+    rng: &mut ChaCha8Rng,
+) -> Option<Vec<PieceId>> {
+    let tries = [Company::NONE, Company::NONE, company, company];
+    tries.into_iter().find_map(|company| draft.search(from, goal, company, taste, rng))
 }

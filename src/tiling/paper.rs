@@ -27,8 +27,8 @@ use super::domain::Domain;
 use super::engine::{Clock, wishes};
 use super::faults::faults;
 use super::library::Library;
-use super::rehearsal::perform;
 use super::outcome::{Options, Outcome, Phase, Progress, Status};
+use super::rehearsal::perform;
 use crate::patch::PatchSet;
 use crate::refine::Performance;
 
