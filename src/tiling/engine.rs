@@ -172,7 +172,8 @@ fn engine(
     engine.tell("enrich");
     let Rehearsal { played, faults, .. } = engine.finish();
     engine.tell("finish");
-    let Engine { crew, clock, .. } = engine;
+    let Engine { mut crew, clock, .. } = engine;
+    crew.tracks.occupancy.close();
     let status = status(crew.tracks.chains(), scene, faults.len());
     let crowd = bake(crew.tracks.chains(), scene, options.seed, played);
     Outcome { crowd, status, danglings: 0, interpenetrations: faults.len(), solve_secs: clock.secs() }
