@@ -12,6 +12,7 @@ use super::domain::{Domain, Spot};
 use super::library::{Closing, Library, Move, Span};
 use super::occupancy::{Occupancy, Piece};
 use super::piece::Rigid;
+use super::prefer::Stay;
 use crate::geom::{Ground, wrap_angle};
 use crate::motion::{FPS, MotionPath};
 
@@ -227,9 +228,11 @@ impl Bridge {
             if !inside || self.seen.contains(&key(&at)) {
                 continue;
             }
-            let cost =
-                cost + step_cost(view, step, taste) * rng.random_range(0.85..1.2) + clutter(view, step, from.tick);
-            if let Some(left) = cost_left(&at, goal) {
+            let price = price(view, step, &at);
+            let cost = cost
+                + step_cost(view, step, taste) * price * rng.random_range(0.85..1.2)
+                + clutter(view, step, from.tick);
+            if let Some(left) = cost_left(&at, goal, price) {
                 let boxed = boxed || view.library.roles[step.role as usize].leaves_box();
                 self.push(Node { at, cost, parent: node, role: step.role, boxed, piece: None }, cost + left);
             }
@@ -340,6 +343,11 @@ fn step_cost(view: View, step: &Move, taste: Taste) -> f32 {
     step.ticks as f32 / FPS * factor
 }
 
+/// Equation 7: what a step costs more for leading where, when or which way nobody wants to be.
+fn price(view: View, step: &Move, to: &Port) -> f32 {
+    view.library.preference.price(view.library.roles[step.role as usize].kind, Stay::new(to.at, to.tick))
+}
+
 /// Cost of the time over which a step leaves a box lying about.
 fn clutter(view: View, step: &Move, tick: i32) -> f32 {
     let rests = &view.library.roles[step.role as usize].rests;
@@ -348,11 +356,11 @@ fn clutter(view: View, step: &Move, tick: i32) -> f32 {
     CLUTTER_WEIGHT * (before + after) as f32 / FPS
 }
 
-/// Estimated cost from `at` to the goal, in seconds; `None` if the goal is out of reach.
-fn cost_left(at: &Port, goal: Goal) -> Option<f32> {
+/// Estimated cost from `at` to the goal, in seconds, the time there costing `price`; `None` if the goal is out of reach.
+fn cost_left(at: &Port, goal: Goal, price: f32) -> Option<f32> {
     match goal {
-        Goal::Until(tick) => Some(TIME_WEIGHT * (tick - at.tick).max(0) as f32 / FPS),
-        Goal::Since(tick) => Some(TIME_WEIGHT * (at.tick - tick).max(0) as f32 / FPS),
+        Goal::Until(tick) => Some(price * TIME_WEIGHT * (tick - at.tick).max(0) as f32 / FPS),
+        Goal::Since(tick) => Some(price * TIME_WEIGHT * (at.tick - tick).max(0) as f32 / FPS),
         Goal::Port(to) => {
             let left = (to.tick - at.tick) as f32 / FPS;
             let distance = at.at.position.distance(to.at.position);

@@ -11,6 +11,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::bake::{Chains, bake};
 use super::bridge::Taste;
+use super::demands::admitted;
 use super::domain::Domain;
 use super::enrich::enrich;
 use super::faults::faults;
@@ -68,6 +69,7 @@ pub fn tile(
     options: &Options,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Outcome> {
+    let set = &*admitted(scene, set, options.method)?;
     check_set(set)?;
     let domain = Domain::new(scene)?;
     match options.method {
@@ -150,7 +152,7 @@ fn engine(
 ) -> Outcome {
     let mut clock = Clock::new(options.time_secs, progress);
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
-    let library = Library::new(set, scene.limits);
+    let library = Library::new(set, scene.limits).preferring(&scene.preference);
     let mut tracks = Tracks::new(&library, domain);
     let taste = Taste { calm: calm(scene), expansions: 60 };
 

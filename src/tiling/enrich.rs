@@ -12,6 +12,7 @@ use super::bridge::{Goal, Port, Taste, easy_closings};
 use super::domain::Spot;
 use super::library::Role;
 use super::occupancy::{Piece, PieceId};
+use super::prefer::Stay;
 use super::tracks::{TrackId, Tracks, Undo, Window};
 use crate::geom::Ground;
 use crate::motion::FPS;
@@ -70,6 +71,9 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
     let horizon = tracks.domain.horizon;
     let (at, tick, joint) = meeting_point(tracks, lead_track, lead, ticks, rng);
     if !fits_hands(tracks, lead_track, lead.entry_group, tick) {
+        return None;
+    }
+    if !library.preference.is_wanted(kind, Stay::new(at, tick), rng) {
         return None;
     }
     let world_from_patch = at.then(lead.entry.inverse());

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::audition::plays_cleanly;
 use super::footprint::{Footprint, Lifts, footprints, lying, reach};
+use super::prefer::{Preference, Ready};
 use crate::deform::{Limits, Strand};
 use crate::geom::{Ground, Turn, Upright};
 use crate::motion::{JOINT_COUNT, Motion, MotionPath};
@@ -152,6 +153,8 @@ pub(super) struct Library<'a> {
     pub max_reach: f32,
     /// By pose group, whether people have a box in their hands.
     pub laden: Vec<bool>,
+    /// Which patches are wanted where, which way, when.
+    pub preference: Ready,
 }
 
 impl<'a> Library<'a> {
@@ -190,8 +193,14 @@ impl<'a> Library<'a> {
             fastest_step: roles.iter().map(|r| longest_step(&r.path)).fold(0.0, f32::max),
             max_reach: roles.iter().flat_map(Role::reaches).fold(0.0, f32::max),
             laden: set.laden_groups(),
+            preference: Ready::default(),
             roles,
         }
+    }
+
+    /// The same with wishes.
+    pub fn preferring(self, preference: &Preference) -> Self {
+        Self { preference: Ready::new(preference, self.set), ..self }
     }
 
     /// True if a role laid along `path` over `ticks` makes the hips go or turn faster than anywhere in the captures.

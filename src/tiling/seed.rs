@@ -7,6 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use super::bridge::{Goal, Port, Taste};
 use super::domain::Spot;
 use super::library::{Library, Move};
+use super::prefer::Stay;
 use super::tracks::{Tracks, Undo};
 use crate::geom::Ground;
 
@@ -18,7 +19,9 @@ pub(super) fn seed_person(tracks: &mut Tracks, laden: bool, taste: Taste, rng: &
     let place = Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
     let heading = rng.random_range(-std::f32::consts::PI..std::f32::consts::PI);
     let lead = rng.random_range(0..tracks.library.roles[role as usize].ticks);
-    if !domain.holds(Spot::ground(0), place, 0.35) {
+    let kind = tracks.library.roles[role as usize].kind;
+    let wanted = tracks.library.preference.is_wanted(kind, Stay::new(Ground::new(place, heading), 0), rng);
+    if !wanted || !domain.holds(Spot::ground(0), place, 0.35) {
         return false;
     }
     // The place is where the person is at tick 0, somewhere inside the first patch.
