@@ -52,8 +52,67 @@ pub(super) struct Stance {
     /// How far the toes point up when the heel strikes, and the heel is up when the toes leave.
     pub strike_pitch: f32,
     pub off_pitch: f32,
+    /// How high the foot goes afterwards, if not as in a walk.
+    pub hop: Option<Hop>,
     /// Filled in by [`Feet::place`]: the flat ankle's ground point and the foot's heading.
     pub place: Ground,
+}
+
+/// The swing of a foot that is drawn up high.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hop {
+    /// How much higher than in a walk the ball gets, metres.
+    pub height: f32,
+    /// Parts of the swing's time at which it begins to be higher, is highest, and is as in a walk again.
+    pub times: [f32; 3],
+    /// Rates at which it gets higher at first and lower at last, m/s.
+    pub rates: [f32; 2],
+    /// At which part of the swing's time the foot comes by the other, and how much of a walk's swing passes meanwhile
+    /// per time; a jump off both feet has no such moment.
+    pub pass: Option<[f32; 2]>,
+}
+
+/// The part of a walk's swing after which the foot comes by the other.
+const PASS: f32 = 0.42;
+
+impl Hop {
+    /// How much higher than in a walk the ball is at a part of a swing of so many seconds.
+    fn height_at(&self, part: f32, span: f32) -> f32 {
+        let ([begin, top, end], [up, down]) = (self.times, self.rates);
+        if !(begin..end).contains(&part) {
+            return 0.0;
+        }
+        hermite(&[(begin, 0.0, up * span), (top, self.height, 0.0), (end, 0.0, down * span)], part)
+    }
+
+    /// The part of a walk's swing that has passed.
+    fn walked(&self, part: f32) -> f32 {
+        let Some([pass, rate]) = self.pass else { return part };
+        let mut keys = vec![(0.0, 0.0, rate)];
+        slow(&mut keys, (pass, PASS), rate);
+        slow(&mut keys, (1.0, 1.0), rate);
+        hermite(&keys, part)
+    }
+
+    /// How much of a walk's swing passes per time when the foot leaves and comes down.
+    fn rate(&self) -> f32 {
+        self.pass.map_or(1.0, |pass| pass[1])
+    }
+}
+
+/// Keys from the last one to another, both passed at a rate; slower in between where there is time.
+fn slow(keys: &mut Vec<(f32, f32, f32)>, to: (f32, f32), rate: f32) {
+    let (at, value, _) = *keys.last().expect("a first key");
+    let (time, third) = (to.0 - at, (to.1 - value) / 3.0);
+    if rate * time > 4.5 * third {
+        let (mut ends, mut middle) = (0.0, 0.0);
+        for _ in 0..30 {
+            ends = 2.0 * third / (rate + middle);
+            middle = third / (time - 2.0 * ends);
+        }
+        keys.extend([(at + ends, value + third, middle), (to.0 - ends, to.1 - third, middle)]);
+    }
+    keys.push((to.0, to.1, rate));
 }
 
 /// A foot at one moment.
@@ -134,11 +193,13 @@ fn planted(s: &Stance, t: f32, lift: f32) -> FootPose {
 
 fn swing(from: &Stance, to: &Stance, t: f32, body: Ground) -> FootPose {
     let span = to.strike - from.toe_off;
-    let u = (t - from.toe_off) / span;
+    let part = (t - from.toe_off) / span;
+    let u = from.hop.map_or(part, |hop| hop.walked(part));
     let (start, goal) = (planted(from, from.toe_off, 0.0), planted(to, to.strike, 0.0));
     let (a, b) = (start.ankle + start.rotation * BALL, goal.ankle + goal.rotation * BALL);
-    let landing_rate = -2.0 * to.strike_pitch / (to.flat - to.strike).max(1e-3) * span;
-    let off_rate = -2.1 * from.off_pitch / (from.toe_off - from.heel_off).max(1e-3) * span;
+    let walk = span / from.hop.map_or(1.0, |hop| hop.rate());
+    let landing_rate = -2.0 * to.strike_pitch / (to.flat - to.strike).max(1e-3) * walk;
+    let off_rate = -2.1 * from.off_pitch / (from.toe_off - from.heel_off).max(1e-3) * walk;
     let pitch = swing_pitch(from.off_pitch, off_rate, to.strike_pitch, landing_rate, u);
     let drop = landing_rate * 0.17;
     let distance = (b - a).length();
@@ -152,7 +213,7 @@ fn swing(from: &Stance, to: &Stance, t: f32, body: Ground) -> FootPose {
             (1.0, b.y, drop.min(-0.06)),
         ],
         u,
-    );
+    ) + from.hop.map_or(0.0, |hop| hop.height_at(part, span));
     let travel = travel(u);
     let free = (std::f32::consts::PI * u).sin().powi(2);
     let mut ground = Vec2::new(a.x + (b.x - a.x) * travel, a.z + (b.z - a.z) * travel);

@@ -137,7 +137,8 @@ fn prepare_frame(actor: &Actor, path: &Path, t: f32, speed: f32) -> Frame {
     let pelvis = Quat::from_rotation_y(at.heading + gait.pelvis_yaw + channels[Channel::PelvisYaw])
         * Quat::from_rotation_x(0.035 + gait.pelvis_pitch + channels[Channel::PelvisPitch])
         * Quat::from_rotation_z(gait.pelvis_roll + channels[Channel::PelvisRoll]);
-    let height = HIPS_HEIGHT - gait.drop + channels[Channel::HipsUp];
+    let flown: f32 = actor.flights.iter().map(|f| f.height(t)).sum();
+    let height = HIPS_HEIGHT - gait.drop + channels[Channel::HipsUp] + flown;
     Frame { t, channels, gait, speed, feet, pelvis, hips: at.apply(local), height }
 }
 

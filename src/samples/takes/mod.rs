@@ -3,6 +3,7 @@
 mod actions;
 mod carry;
 mod greet;
+mod jump;
 mod lift;
 mod meet;
 mod place;
@@ -21,6 +22,7 @@ pub(super) fn scenes() -> Vec<Scene> {
         walks::scenes(),
         place::scenes(),
         actions::scenes(),
+        jump::scenes(),
         carry::scenes(),
         lift::scenes(),
         sit::scenes(),

@@ -30,7 +30,8 @@ fn joints_turn_at_human_speeds() {
 #[test]
 fn roots_accelerate_like_people() {
     let mut worst = (0f32, String::new());
-    for (take, _) in TAKES.iter() {
+    // Who jumps is looked at in `jumps`.
+    for (take, _) in TAKES.iter().filter(|(t, _)| !t.file.patches.iter().any(|p| p.labels.contains(&"jump".into()))) {
         for clip in &take.clips {
             for f in 3..clip.frames() - 3 {
                 // Over 1/20 s.
