@@ -3,16 +3,17 @@
 //! Best-first search over rigidly placed patches, which stitch exactly; only the last one or two are deformed so that
 //! the chain ends exactly where it must. Wherever the rest can be closed by such a strand the search ends.
 
-use std::collections::{BinaryHeap, HashSet};
+use std::collections::BinaryHeap;
 
 use rand::{Rng, RngExt};
 use rand_chacha::ChaCha8Rng;
+use rustc_hash::FxHashSet;
 
-use super::domain::{Domain, Spot};
+use super::domain::Spot;
 use super::library::{Closing, Library, Move, Span};
-use super::occupancy::{Occupancy, Piece};
-use super::piece::Rigid;
+use super::piece::{Piece, Rigid};
 use super::prefer::Stay;
+use super::view::View;
 use crate::geom::{Ground, wrap_angle};
 use crate::motion::{FPS, MotionPath};
 
@@ -79,9 +80,10 @@ struct Node {
     role: u32,
     /// Whether the way to here leaves boxes lying, which the rest of it must not run into.
     boxed: bool,
-    /// Placed and found free when first expanded.
-    piece: Option<Piece>,
 }
+
+/// In place of a role: where the search begins.
+const ROOT: u32 = u32::MAX;
 
 #[derive(PartialEq)]
 struct Entry {
@@ -102,23 +104,13 @@ impl Ord for Entry {
     }
 }
 
-/// What a search looks at.
-#[derive(Clone, Copy)]
-pub(super) struct View<'a> {
-    /// The patches.
-    pub library: &'a Library<'a>,
-    /// Walls and time.
-    pub domain: &'a Domain,
-    /// Who is where.
-    pub occupancy: &'a Occupancy,
-}
-
 /// The search with its reusable buffers.
 #[derive(Default)]
 pub(super) struct Bridge {
     nodes: Vec<Node>,
     heap: BinaryHeap<Entry>,
-    seen: HashSet<(i32, i32, i32, i32, u32)>,
+    seen: FxHashSet<u64>,
+    backward: bool,
     path: MotionPath,
 }
 
@@ -137,12 +129,13 @@ impl Bridge {
         self.nodes.clear();
         self.heap.clear();
         self.seen.clear();
-        self.push(Node { at: from, cost: 0.0, parent: 0, role: u32::MAX, boxed: false, piece: None }, 0.0);
+        self.backward = matches!(goal, Goal::Since(_));
+        self.push(Node { at: from, cost: 0.0, parent: 0, role: ROOT, boxed: false }, 0.0);
         let mut expansions = 0;
         while let Some(Entry { node, .. }) = self.heap.pop() {
             let at = self.nodes[node as usize].at;
             // A state counts as seen once a free patch has led to it: the first that would may be blocked.
-            if self.seen.contains(&key(&at)) || !self.place(view, node, goal) {
+            if self.seen.contains(&key(&at)) || !self.is_free(view, node) {
                 continue;
             }
             self.seen.insert(key(&at));
@@ -152,12 +145,12 @@ impl Bridge {
                 Goal::Since(tick) => at.tick <= tick,
             };
             if done {
-                return Some(self.chain(node, matches!(goal, Goal::Since(_)), vec![]));
+                return Some(self.chain(view, node, vec![]));
             }
             if let Goal::Port(to) = goal
                 && let Some(last) = self.close(view, node, to, rng)
             {
-                return Some(self.chain(node, false, last));
+                return Some(self.chain(view, node, last));
             }
             expansions += 1;
             if expansions > taste.expansions {
@@ -173,36 +166,42 @@ impl Bridge {
         self.nodes.push(node);
     }
 
-    /// Places the node's patch; false if it is not free.
-    fn place(&mut self, view: View, node: u32, goal: Goal) -> bool {
+    /// Entry and tick of a node's patch.
+    fn entry(&self, node: u32) -> (Ground, i32) {
         let n = &self.nodes[node as usize];
-        if n.role == u32::MAX {
+        let at = if self.backward { n.at } else { self.nodes[n.parent as usize].at };
+        (at.at, at.tick)
+    }
+
+    fn piece(&self, view: View, node: u32) -> Piece {
+        let (entry, begin) = self.entry(node);
+        Piece::rigid(view.library, view.domain, self.nodes[node as usize].role, NO_INSTANCE, entry, begin)
+    }
+
+    /// True if the patch that leads to a node is in nobody's way.
+    fn is_free(&self, view: View, node: u32) -> bool {
+        let Node { role, boxed, parent, .. } = self.nodes[node as usize];
+        if role == ROOT {
             return true;
         }
-        let (entry, begin) = match goal {
-            Goal::Since(_) => (n.at.at, n.at.tick),
-            _ => (self.nodes[n.parent as usize].at.at, self.nodes[n.parent as usize].at.tick),
-        };
-        let View { library, domain, occupancy } = view;
-        let boxes = library.roles[n.role as usize].leaves_box();
-        if !boxes && !occupancy.is_free_rigid(library, domain, n.role, Rigid::new(library, n.role, entry, begin)) {
+        let leaves_box = view.library.roles[role as usize].leaves_box();
+        let (entry, begin) = self.entry(node);
+        if !leaves_box && !view.is_free_rigid(role, Rigid::new(view.library, role, entry, begin)) {
             return false;
         }
-        let piece = Piece::rigid(library, domain, n.role, NO_INSTANCE, entry, begin);
-        if (boxes && !occupancy.is_free(library, domain, &piece))
-            || (n.boxed && self.meets_own_way(view, n.parent, &piece))
-        {
-            return false;
+        if !boxed {
+            return true;
         }
-        self.nodes[node as usize].piece = Some(piece);
-        true
+        let piece = self.piece(view, node);
+        !(leaves_box && !view.is_free(&piece)) && !self.meets_own_way(view, parent, &piece)
     }
 
     /// True if a piece runs into a box on the way to a node, or its own box lies on that way.
     fn meets_own_way(&self, view: View, node: u32, piece: &Piece) -> bool {
         let mut at = node;
-        while let Some(other) = &self.nodes[at as usize].piece {
-            if (other.leaves_box() || piece.leaves_box()) && piece.meets(other, view.library) {
+        while self.nodes[at as usize].role != ROOT {
+            let other = self.piece(view, at);
+            if (other.leaves_box() || piece.leaves_box()) && piece.meets(&other, view.library) {
                 return true;
             }
             at = self.nodes[at as usize].parent;
@@ -234,7 +233,7 @@ impl Bridge {
                 + clutter(view, step, from.tick);
             if let Some(left) = cost_left(&at, goal, price) {
                 let boxed = boxed || view.library.roles[step.role as usize].leaves_box();
-                self.push(Node { at, cost, parent: node, role: step.role, boxed, piece: None }, cost + left);
+                self.push(Node { at, cost, parent: node, role: step.role, boxed }, cost + left);
             }
         }
     }
@@ -246,8 +245,7 @@ impl Bridge {
         if left <= 0 || left > CLOSE_WITHIN_TICKS {
             return None;
         }
-        let groups = view.library.set.groups.len();
-        let closings = &view.library.closings[from.group as usize * groups + to.group as usize];
+        let closings = view.library.closings_between(from.group, to.group);
         let count = closings.all.len();
         if count == 0 {
             return None;
@@ -265,20 +263,18 @@ impl Bridge {
             return None;
         }
         let pieces = split(view, closing, &self.path, from.tick, to.tick)?;
-        let free = |p: &Piece| {
-            view.occupancy.is_free(view.library, view.domain, p) && !(boxed && self.meets_own_way(view, node, p))
-        };
+        let free = |p: &Piece| view.is_free(p) && !(boxed && self.meets_own_way(view, node, p));
         pieces.iter().all(free).then_some(pieces)
     }
 
-    fn chain(&mut self, node: u32, backward: bool, last: Vec<Piece>) -> Vec<Piece> {
+    fn chain(&self, view: View, node: u32, last: Vec<Piece>) -> Vec<Piece> {
         let mut pieces = Vec::new();
         let mut at = node;
-        while let Some(piece) = self.nodes[at as usize].piece.take() {
-            pieces.push(piece);
+        while self.nodes[at as usize].role != ROOT {
+            pieces.push(self.piece(view, at));
             at = self.nodes[at as usize].parent;
         }
-        if !backward {
+        if !self.backward {
             pieces.reverse();
         }
         pieces.extend(last);
@@ -299,7 +295,7 @@ impl Span {
 /// Number of strands that lead from one port to another with little deformation: how easy the bridge will be.
 pub(super) fn easy_closings(library: &Library, from: Port, to: Port) -> usize {
     let (left, way) = (to.tick - from.tick, from.at.inverse().then(to.at));
-    let closings = &library.closings[from.group as usize * library.set.groups.len() + to.group as usize];
+    let closings = library.closings_between(from.group, to.group);
     closings.spans.iter().filter(|span| span.leads(way, left, EASY_REACH, EASY_TURN)).count()
 }
 
@@ -372,8 +368,11 @@ fn cost_left(at: &Port, goal: Goal, price: f32) -> Option<f32> {
     }
 }
 
-fn key(p: &Port) -> (i32, i32, i32, i32, u32) {
-    let heading = (wrap_angle(p.at.heading).to_degrees() / 20.0).round() as i32;
-    let (x, z) = (p.at.position.x / 0.25, p.at.position.y / 0.25);
-    (x.round() as i32, z.round() as i32, heading, p.tick.div_euclid(5), p.group)
+/// States of one key are as good as the same: 25 cm, 20 degrees, 5 ticks.
+fn key(p: &Port) -> u64 {
+    let heading = (wrap_angle(p.at.heading).to_degrees() / 20.0).round() as i64 as u64;
+    let cell = (p.at.position * 4.0).round();
+    let field = |value: i64, bits: u32| value as u64 & ((1 << bits) - 1);
+    let place = field(cell.x as i64, 18) << 18 | field(cell.y as i64, 18);
+    (place << 28) | (heading & 0x1f) << 23 | field(p.tick.div_euclid(5) as i64, 15) << 8 | u64::from(p.group)
 }

@@ -4,7 +4,9 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use super::audition::plays_cleanly;
+use super::bridge::Port;
 use super::footprint::{Footprint, Lifts, footprints, lying, reach};
+use super::piece::Piece;
 use super::prefer::{Preference, Ready};
 use crate::deform::{Limits, Strand};
 use crate::geom::{Ground, Turn, Upright};
@@ -217,6 +219,34 @@ impl<'a> Library<'a> {
             .iter()
             .zip(bends)
             .any(|(own, bend)| bend > 1e-4 && (own + bend) * rate > HURRY * self.fastest[0])
+    }
+
+    /// The closings from one pose group to another.
+    pub fn closings_between(&self, from: u32, to: u32) -> &Closings {
+        &self.closings[from as usize * self.set.groups.len() + to as usize]
+    }
+
+    /// Number of people in the patch of a role.
+    pub fn people_of(&self, role: u32) -> usize {
+        self.set.kinds[self.roles[role as usize].kind as usize].people()
+    }
+
+    /// The port at which a piece begins.
+    pub fn entry_of(&self, piece: &Piece) -> Port {
+        Port { at: piece.entry(), tick: piece.begin, group: self.roles[piece.role as usize].entry_group }
+    }
+
+    /// The port at which a piece ends.
+    pub fn exit_of(&self, piece: &Piece) -> Port {
+        Port { at: piece.exit(), tick: piece.end, group: self.roles[piece.role as usize].exit_group }
+    }
+
+    /// Entry and exit of a role of a patch that is placed rigidly, its clock beginning at tick `clock`.
+    pub fn ports(&self, role: u32, world_from_patch: Ground, clock: i32) -> (Port, Port) {
+        let r = &self.roles[role as usize];
+        let entry = Port { at: world_from_patch.then(r.entry), tick: clock + r.begin, group: r.entry_group };
+        let exit = Port { at: entry.at.then(r.exit), tick: entry.tick + r.ticks, group: r.exit_group };
+        (entry, exit)
     }
 
     /// The roles of a kind.

@@ -5,13 +5,16 @@ mod bake;
 mod boxes;
 mod bridge;
 mod builds;
+mod crew;
 mod demands;
 mod domain;
+mod draft;
 mod engine;
 mod enrich;
 mod faults;
 mod figure;
 mod footprint;
+mod gather;
 mod grid;
 mod library;
 mod mend;
@@ -20,9 +23,12 @@ mod outcome;
 mod paper;
 mod piece;
 mod prefer;
+mod rehearsal;
 mod scene;
 mod seed;
+mod sketch;
 mod tracks;
+mod view;
 
 #[cfg(test)]
 #[path = "../../tests/common/mod.rs"]

@@ -237,6 +237,7 @@ mod tests {
     use super::super::common::plain_set;
     use super::super::occupancy::Occupancy;
     use super::super::scene::Scene;
+    use super::super::view::View;
     use super::*;
     use crate::deform::Limits;
     use crate::geom::Upright;
@@ -272,16 +273,16 @@ mod tests {
         let id = occupancy.insert(lifting);
         for begin in [-10, 20, 200, domain.horizon - 20] {
             let (through, past) = (walker(6.0, begin), walker(7.2, begin));
-            assert!(!occupancy.is_free(&library, &domain, &through), "at tick {begin}");
-            assert_eq!(occupancy.blockers(&library, &domain, &through), Some(vec![id]));
+            assert!(!View::new(&library, &domain, &occupancy).is_free(&through), "at tick {begin}");
+            assert_eq!(View::new(&library, &domain, &occupancy).blockers(&through), Some(vec![id]));
             assert!(through.meets(occupancy.piece(id), &library) && !past.meets(occupancy.piece(id), &library));
-            assert!(occupancy.is_free(&library, &domain, &past), "at tick {begin}");
+            assert!(View::new(&library, &domain, &occupancy).is_free(&past), "at tick {begin}");
         }
         // Nobody is there who could be cast.
         let mut near = vec![];
         occupancy.near(50, Vec2::new(6.0, 6.6), 2.0, &mut near);
         assert!(near.is_empty());
         occupancy.hide(id);
-        assert!(occupancy.is_free(&library, &domain, &walker(6.0, 20)));
+        assert!(View::new(&library, &domain, &occupancy).is_free(&walker(6.0, 20)));
     }
 }
