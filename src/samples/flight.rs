@@ -1,7 +1,9 @@
 //! Jumps: hips that are pushed up, fly as bodies do, and are caught; feet that are drawn up meanwhile.
 
+use glam::Vec2;
+
 use super::actor::{Actor, other, secs, strike_pitch};
-use super::footsteps::{Base, Hop};
+use super::footsteps::{Base, Hop, Pass};
 use super::gait::Gait;
 use super::posture::Channel::*;
 use super::timeline::hermite;
@@ -101,7 +103,7 @@ impl Actor {
         // The leading leg has been in the air since before mid-stance: it is highest in the middle of the flight.
         let since = self.feet[lands as usize].stances.last().expect("a stance").toe_off;
         let part = |t: f32| (t - since) / (landing - since);
-        let pass = Some([part(t), (landing - since) / (SWING * secs(before.half))]);
+        let pass = Some(passing(t, before));
         let times = [part(t), part(middle), 1.0];
         self.hop(lands, Hop { height: 0.45, times, rates: [0.0, down], pass });
         self.lift(foot, [off - 0.09, off - 0.25, off], 0.80);
@@ -110,7 +112,7 @@ impl Actor {
         // The trailing leg follows a little later, and swings on into the next step.
         let next = end + 0.43 * secs(gait.half);
         let part = |t: f32| (t - off) / (next - off);
-        let pass = Some([part(end), (next - off) / (SWING * secs(gait.half))]);
+        let pass = Some(passing(end, gait));
         let times = [0.0, part(middle + 0.05), part(end)];
         self.hop(foot, Hop { height: 0.40, times, rates: [up, 0.0], pass });
         self.flights.push(flight);
@@ -124,10 +126,12 @@ impl Actor {
     }
 }
 
-/// A foot of a walker is in the air for this much of half a cycle.
-const SWING: f32 = 0.74;
+fn passing(at: f32, gait: Gait) -> Pass {
+    Pass { at, half: secs(gait.half), speed: gait.speed, place: Vec2::ZERO, velocity: Vec2::ZERO }
+}
+
 /// Frames of a leap: when the foot leaves, the other lands, and is in mid-stance.
-const LEAP: [i32; 3] = [8, 19, 27];
+const LEAP: [i32; 3] = [8, 19, 25];
 
 #[cfg(test)]
 mod tests {

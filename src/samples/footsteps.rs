@@ -67,13 +67,39 @@ pub(super) struct Hop {
     pub times: [f32; 3],
     /// Rates at which it gets higher at first and lower at last, m/s.
     pub rates: [f32; 2],
-    /// At which part of the swing's time the foot comes by the other, and how much of a walk's swing passes meanwhile
-    /// per time; a jump off both feet has no such moment.
-    pub pass: Option<[f32; 2]>,
+    /// When the foot comes by the other; a jump off both feet has no such moment.
+    pub pass: Option<Pass>,
 }
 
+/// The moment at which a foot that is in the air comes by the other as it does in a walk.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pass {
+    /// When, seconds.
+    pub at: f32,
+    /// Half a cycle of the walk, seconds, and its speed.
+    pub half: f32,
+    pub speed: f32,
+    /// Filled in by [`Feet::place`]: where the ball is then, and how fast.
+    pub place: Vec2,
+    pub velocity: Vec2,
+}
+
+/// A walker's foot is in the air for this much of half a cycle.
+pub(super) const SWING: f32 = 0.74;
 /// The part of a walk's swing after which the foot comes by the other.
 const PASS: f32 = 0.42;
+
+impl Pass {
+    /// As [`travel`] has it of a walk's step, whose length is a cycle's.
+    fn settle(&mut self, path: &Path, foot: Foot) {
+        let step = 2.0 * self.speed * self.half;
+        let ahead = foothold(Base::Walk, foot).position.y + BALL.z + step * (travel(PASS) - 0.5);
+        let body = path.at(self.at);
+        self.place = body.apply(Vec2::new(1.2 * foothold(Base::Walk, foot).position.x, ahead));
+        let rate = (travel(PASS + 0.01) - travel(PASS - 0.01)) / 0.02 / (SWING * self.half);
+        self.velocity = body.turn().apply(Vec2::new(0.0, step * rate));
+    }
+}
 
 impl Hop {
     /// How much higher than in a walk the ball is at a part of a swing of so many seconds.
@@ -86,8 +112,9 @@ impl Hop {
     }
 
     /// The part of a walk's swing that has passed.
-    fn walked(&self, part: f32) -> f32 {
-        let Some([pass, rate]) = self.pass else { return part };
+    fn walked(&self, part: f32, begin: f32, span: f32) -> f32 {
+        let Some(pass) = self.pass else { return part };
+        let (pass, rate) = ((pass.at - begin) / span, self.rate(span));
         let mut keys = vec![(0.0, 0.0, rate)];
         slow(&mut keys, (pass, PASS), rate);
         slow(&mut keys, (1.0, 1.0), rate);
@@ -95,8 +122,8 @@ impl Hop {
     }
 
     /// How much of a walk's swing passes per time when the foot leaves and comes down.
-    fn rate(&self) -> f32 {
-        self.pass.map_or(1.0, |pass| pass[1])
+    fn rate(&self, span: f32) -> f32 {
+        self.pass.map_or(1.0, |pass| span / (SWING * pass.half))
     }
 }
 
@@ -145,6 +172,9 @@ impl Feet {
         for s in &mut self.stances {
             let Placement { base, at, offset } = s.placement;
             s.place = path.at(at).then(offset).then(foothold(base, s.foot));
+            if let Some(pass) = s.hop.as_mut().and_then(|hop| hop.pass.as_mut()) {
+                pass.settle(path, s.foot);
+            }
         }
     }
 
@@ -194,10 +224,10 @@ fn planted(s: &Stance, t: f32, lift: f32) -> FootPose {
 fn swing(from: &Stance, to: &Stance, t: f32, body: Ground) -> FootPose {
     let span = to.strike - from.toe_off;
     let part = (t - from.toe_off) / span;
-    let u = from.hop.map_or(part, |hop| hop.walked(part));
+    let u = from.hop.map_or(part, |hop| hop.walked(part, from.toe_off, span));
     let (start, goal) = (planted(from, from.toe_off, 0.0), planted(to, to.strike, 0.0));
     let (a, b) = (start.ankle + start.rotation * BALL, goal.ankle + goal.rotation * BALL);
-    let walk = span / from.hop.map_or(1.0, |hop| hop.rate());
+    let walk = span / from.hop.map_or(1.0, |hop| hop.rate(span));
     let landing_rate = -2.0 * to.strike_pitch / (to.flat - to.strike).max(1e-3) * walk;
     let off_rate = -2.1 * from.off_pitch / (from.toe_off - from.heel_off).max(1e-3) * walk;
     let pitch = swing_pitch(from.off_pitch, off_rate, to.strike_pitch, landing_rate, u);
@@ -217,6 +247,11 @@ fn swing(from: &Stance, to: &Stance, t: f32, body: Ground) -> FootPose {
     let travel = travel(u);
     let free = (std::f32::consts::PI * u).sin().powi(2);
     let mut ground = Vec2::new(a.x + (b.x - a.x) * travel, a.z + (b.z - a.z) * travel);
+    if let Some(pass) = from.hop.and_then(|hop| hop.pass) {
+        let (at, rate) = ((pass.at - from.toe_off) / span, pass.velocity * span);
+        let through = |a: f32, p: f32, v: f32, b: f32| hermite(&[(0.0, a, 0.0), (at, p, v), (1.0, b, 0.0)], part);
+        ground = Vec2::new(through(a.x, pass.place.x, rate.x, b.x), through(a.z, pass.place.y, rate.y, b.z));
+    }
     if from.placement.base == Base::Walk || to.placement.base == Base::Walk {
         // A walker's foot comes by close to the other, wherever it is from and goes to.
         let mut beside = body.inverse().apply(ground);

@@ -29,7 +29,7 @@ fn leap() -> Scene {
     a.start(Foot::Left, NORMAL, 0.0);
     a.walk(NORMAL, 2);
     let from = a.now;
-    a.leap(NORMAL, 2.3);
+    a.leap(NORMAL, 1.9);
     let to = a.now;
     a.walk(NORMAL, 2);
     a.stop(0.0);

@@ -48,3 +48,22 @@ fn bodies_in_the_air_fall() {
         assert!(hips > 0.5, "{name}: {hips}");
     }
 }
+
+#[test]
+fn dump() {
+    let (take, globals) = TAKES.iter().find(|(t, _)| t.file.name == "leap").unwrap();
+    println!("{:?}", take.file.plants);
+    for f in (165..250).step_by(3) {
+        let g = &globals[0][f];
+        let p = |j: usize| format!("({:.2} {:.2})", g[j].0.z, g[j].0.y);
+        println!(
+            "{f} {:.2}s hips {} L {} {} R {} {}",
+            f as f32 / 60.0,
+            p(HIPS),
+            p(LEFT_FOOT),
+            p(LEFT_TOE),
+            p(RIGHT_FOOT),
+            p(RIGHT_TOE)
+        );
+    }
+}
