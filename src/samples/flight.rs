@@ -6,7 +6,7 @@ use super::actor::{Actor, other, secs, strike_pitch};
 use super::footsteps::{Base, Hop, Pass};
 use super::gait::Gait;
 use super::posture::Channel::*;
-use super::timeline::hermite;
+use super::timeline::{Span, hermite};
 use crate::geom::Ground;
 use crate::motion::Foot;
 
@@ -30,6 +30,12 @@ impl Flight {
         let airborne = self.times[2] - self.times[1];
         let up = (self.ends[1] - self.ends[0]) / airborne + 0.5 * GRAVITY * airborne;
         [up, up - GRAVITY * airborne]
+    }
+
+    /// How far the feet are off the ground, 0 to 1: those in the air follow the hips as far as legs reach.
+    pub fn airborne(&self, t: f32) -> f32 {
+        let [_, off, landing, _] = self.times;
+        Span([off, off + 0.08, landing - 0.06, landing + 0.02]).weight(t)
     }
 
     /// Height at `t`.
@@ -97,8 +103,9 @@ impl Actor {
         let (t, lands) = (self.t(), other(foot));
         let [off, landing, end] = LEAP.map(|frames| t + secs(frames));
         let middle = 0.5 * (off + landing);
-        let flight = Flight { times: [t, off, landing, end], dips: [0.045, 0.075], ends: [0.035, 0.0] };
-        let [up, down] = flight.rates().map(|rate| 0.6 * rate);
+        let flight = Flight { times: [t, off, landing, end], dips: [0.045, 0.13], ends: [0.0, -0.06] };
+        let [up, down] = flight.rates();
+        let (up, down) = (0.6 * up, 0.6 * down);
         self.plan.speeds.extend([(t, before.speed), (off, speed), (landing, speed), (end, gait.speed)]);
         // The leading leg has been in the air since before mid-stance: it is highest in the middle of the flight.
         let since = self.feet[lands as usize].stances.last().expect("a stance").toe_off;
@@ -106,7 +113,7 @@ impl Actor {
         let pass = Some(passing(t, before));
         let times = [part(t), part(middle), 1.0];
         self.hop(lands, Hop { height: 0.45, times, rates: [0.0, down], pass });
-        self.lift(foot, [off - 0.09, off - 0.25, off], 0.80);
+        self.lift(foot, [off - 0.07, off - 0.17, off], 0.75);
         let touches = [landing, landing + 0.06, landing + 0.12];
         self.land(lands, Base::Walk, end, Ground::IDENTITY, touches, strike_pitch(gait.speed));
         // The trailing leg follows a little later, and swings on into the next step.
@@ -131,7 +138,7 @@ fn passing(at: f32, gait: Gait) -> Pass {
 }
 
 /// Frames of a leap: when the foot leaves, the other lands, and is in mid-stance.
-const LEAP: [i32; 3] = [8, 19, 25];
+const LEAP: [i32; 3] = [6, 17, 23];
 
 #[cfg(test)]
 mod tests {

@@ -249,7 +249,9 @@ fn swing(from: &Stance, to: &Stance, t: f32, body: Ground) -> FootPose {
     let mut ground = Vec2::new(a.x + (b.x - a.x) * travel, a.z + (b.z - a.z) * travel);
     if let Some(pass) = from.hop.and_then(|hop| hop.pass) {
         let (at, rate) = ((pass.at - from.toe_off) / span, pass.velocity * span);
-        let through = |a: f32, p: f32, v: f32, b: f32| hermite(&[(0.0, a, 0.0), (at, p, v), (1.0, b, 0.0)], part);
+        // A foot that leaves high does not stay behind.
+        let quick = if from.hop.is_some_and(|hop| hop.rates[0] > 0.0) { 0.25 } else { 0.0 };
+        let through = |a: f32, p: f32, v: f32, b: f32| hermite(&[(0.0, a, quick * v), (at, p, v), (1.0, b, 0.0)], part);
         ground = Vec2::new(through(a.x, pass.place.x, rate.x, b.x), through(a.z, pass.place.y, rate.y, b.z));
     }
     if from.placement.base == Base::Walk || to.placement.base == Base::Walk {

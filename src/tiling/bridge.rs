@@ -68,6 +68,9 @@ const WALL_ROOM: f32 = 0.3;
 const ASKEW_WEIGHT: f32 = 0.2;
 /// Cost factor of taking up and putting down.
 const LIFT_WEIGHT: f32 = 0.85;
+/// Cost factor of jumping over something and over nothing.
+const LEAP_OVER: f32 = 0.2;
+const LEAP_WEIGHT: f32 = 4.0;
 /// Cost of a box that lies about for a second.
 const CLUTTER_WEIGHT: f32 = 0.05;
 /// Below this mean speed a patch counts as standing, m/s.
@@ -228,9 +231,8 @@ impl Bridge {
                 continue;
             }
             let price = price(view, step, &at);
-            let cost = cost
-                + step_cost(view, step, taste) * price * rng.random_range(0.85..1.2)
-                + clutter(view, step, from.tick);
+            let effort = step_cost(view, step, taste) * leap_weight(view, step, &from, goal);
+            let cost = cost + effort * price * rng.random_range(0.85..1.2) + clutter(view, step, from.tick);
             if let Some(left) = cost_left(&at, goal, price) {
                 let boxed = boxed || view.library.roles[step.role as usize].leaves_box();
                 self.push(Node { at, cost, parent: node, role: step.role, boxed }, cost + left);
@@ -337,6 +339,18 @@ fn step_cost(view: View, step: &Move, taste: Taste) -> f32 {
         1.0 + ASKEW_WEIGHT * step.askew
     };
     step.ticks as f32 / FPS * factor
+}
+
+/// Who jumps does it over something: cheap where there is an obstacle under the highest point, dear elsewhere.
+fn leap_weight(view: View, step: &Move, from: &Port, goal: Goal) -> f32 {
+    let role = &view.library.roles[step.role as usize];
+    let Some(frame) = role.leap else { return 1.0 };
+    let (entry, begin) = match goal {
+        Goal::Since(_) => (from.at.then(step.to), from.tick - step.ticks),
+        _ => (from.at, from.tick),
+    };
+    let place = entry.then(role.path.at(frame)).position;
+    if view.domain.is_over_obstacle(begin + frame as i32, place) { LEAP_OVER } else { LEAP_WEIGHT }
 }
 
 /// Equation 7: what a step costs more for leading where, when or which way nobody wants to be.

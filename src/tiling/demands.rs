@@ -3,8 +3,14 @@
 use std::borrow::Cow;
 
 use super::{Method, Scene};
-use crate::patch::PatchSet;
+use crate::patch::{PatchKind, PatchSet};
 use crate::{Error, Result};
+
+/// Label of kinds that are for jumping over something.
+const JUMP: &str = "jump";
+
+/// Label of kinds that are only used where a scene has placed them.
+const STAGED: &str = "staged";
 
 /// The kinds of `set` that the scene uses.
 ///
@@ -14,10 +20,15 @@ use crate::{Error, Result};
 pub(super) fn admitted<'a>(scene: &Scene, set: &'a PatchSet, method: Method) -> Result<Cow<'a, PatchSet>> {
     possible(scene, method)?;
     known(scene, set)?;
-    if set.kinds.iter().all(|k| scene.kinds.lets_pass(&k.labels)) {
+    let used = |kind: &PatchKind| {
+        let placed = scene.placed.iter().any(|p| p.kind == kind.name);
+        let wanted = scene.kinds.lets_pass(&kind.labels) && (!has(kind, JUMP) || may_jump(scene)) && !has(kind, STAGED);
+        placed || wanted
+    };
+    if set.kinds.iter().all(used) {
         return Ok(Cow::Borrowed(set));
     }
-    let kinds: Vec<_> = set.kinds.iter().filter(|k| scene.kinds.lets_pass(&k.labels)).cloned().collect();
+    let kinds: Vec<_> = set.kinds.iter().filter(|k| used(k)).cloned().collect();
     if kinds.is_empty() {
         let problem = format!("expected to leave some of {} kinds over, found none left", set.kinds.len());
         return Err(Error::invalid("scene", "kinds", problem));
@@ -25,12 +36,22 @@ pub(super) fn admitted<'a>(scene: &Scene, set: &'a PatchSet, method: Method) -> 
     Ok(Cow::Owned(PatchSet { groups: set.groups.clone(), kinds }))
 }
 
+fn has(kind: &PatchKind, label: &str) -> bool {
+    kind.labels.iter().any(|l| l == label)
+}
+
+/// People jump where there is something to jump over, or where they are told to.
+fn may_jump(scene: &Scene) -> bool {
+    let over = scene.obstacles.iter().any(|o| o.height.is_some());
+    over || scene.kinds.only.iter().map(String::as_str).chain(scene.preference.labels()).any(|l| l == JUMP)
+}
+
 /// Refuses what the method cannot do.
 fn possible(scene: &Scene, method: Method) -> Result<()> {
     let asked = [
         ("source", !scene.sources.is_empty()),
         ("sink", !scene.sinks.is_empty()),
-        ("place", !scene.placed.is_empty()),
+        ("place", method == Method::Paper && !scene.placed.is_empty()),
         ("team", !scene.teams.is_empty()),
         ("rivals", !scene.rivals.is_empty()),
         ("periodic", scene.periodic.any()),
@@ -57,7 +78,12 @@ fn known(scene: &Scene, set: &PatchSet) -> Result<()> {
         let problem = format!("expected a label of the patch set ({}), found {label:?}", labels.join(", "));
         return Err(Error::invalid("scene", place, problem));
     }
-    match scene.placed.iter().find(|p| !set.kinds.iter().any(|k| k.name == p.kind)) {
+    let people = |name: &str| set.kinds.iter().find(|k| k.name == name).map(PatchKind::people);
+    if let Some(alone) = scene.placed.iter().find(|p| people(&p.kind) == Some(1)) {
+        let problem = format!("expected a kind of two people or more, found {:?} of one", alone.kind);
+        return Err(Error::invalid("scene", "place", problem));
+    }
+    match scene.placed.iter().find(|p| people(&p.kind).is_none()) {
         Some(placed) => {
             let problem = format!("expected the name of a kind of the patch set, found {:?}", placed.kind);
             Err(Error::invalid("scene", "place", problem))
@@ -69,7 +95,6 @@ fn known(scene: &Scene, set: &PatchSet) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::patch::PatchKind;
     use crate::tiling::{Form, Periodic, Preference, Term};
 
     fn set() -> PatchSet {

@@ -17,6 +17,8 @@ use super::domain::Domain;
 use super::draft::Draft;
 use super::enrich::enrich;
 use super::gather::{Encores, Wish, gather};
+use super::hurdle::{hurdle, jumpers};
+use super::keyframe::keyframe;
 use super::library::Library;
 use super::mend::{dissolve, mend};
 use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
@@ -27,6 +29,12 @@ use super::{Scene, paper};
 use crate::patch::PatchSet;
 use crate::{Error, Result};
 
+/// Rounds of tries for everybody in a placed patch to find their ways.
+const KEYFRAME_TRIES: usize = 25;
+/// One in so many people jumps over something, where there is something low.
+const HURDLERS: usize = 6;
+/// Failed tries in a row after which nobody more jumps.
+const HURDLE_PATIENCE: usize = 200;
 /// Failed gatherings in a row after which people come alone.
 const GATHER_PATIENCE: usize = 400;
 /// States expanded to lead people to and from where they meet.
@@ -163,16 +171,21 @@ fn engine(
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Outcome {
     let clock = Clock::new(options.time_secs, progress);
-    let library = Library::new(set, scene.limits).preferring(&scene.preference);
+    let library = Library::new(set, scene.limits).preferring(&scene.preference).placing(&scene.placed);
     let crew = Crew::new(Tracks::new(&library, domain), scene.region.area(), options.seed);
     let taste = Taste { calm: calm(scene), expansions: 60 };
     let mut engine = Engine { scene, crew, taste, clock };
+    let missing = engine.keyframes();
+    engine.hurdle();
     engine.gather();
     engine.seed();
     engine.enrich();
     let Rehearsal { played, faults, .. } = engine.finish();
     let Engine { crew, clock, .. } = engine;
-    let status = status(crew.tracks.chains(), scene, faults.len());
+    let status = match missing {
+        Some(problem) => Status::Imperfect(problem),
+        None => status(crew.tracks.chains(), scene, faults.len()),
+    };
     let crowd = bake(crew.tracks.chains(), scene, options.seed, played);
     Outcome { crowd, status, danglings: 0, interpenetrations: faults.len(), solve_secs: clock.secs() }
 }
@@ -218,6 +231,38 @@ impl Engine<'_> {
 
     fn people_left(&self) -> usize {
         self.scene.characters.saturating_sub(self.crew.tracks.tracks.len())
+    }
+
+    /// Puts in what the scene has placed; what of it found no way, if anything.
+    fn keyframes(&mut self) -> Option<String> {
+        let taste = Taste { expansions: MEND_EXPANSIONS, ..self.taste };
+        let mut missing = vec![];
+        for placed in &self.scene.placed {
+            let found = (0..KEYFRAME_TRIES).any(|_| {
+                self.goes_on(Phase::Seed) && self.crew.work_one(|draft, rng| keyframe(draft, placed, taste, rng))
+            });
+            if !found {
+                missing.push(format!("{:?} at {} s", placed.kind, placed.secs));
+            }
+        }
+        (!missing.is_empty()).then(|| format!("no way was found for everybody to and from {}", missing.join(", ")))
+    }
+
+    /// Adds people who jump over what is low enough, if there is such.
+    fn hurdle(&mut self) {
+        let jumpers = jumpers(self.crew.tracks.library);
+        let low = self.scene.obstacles.iter().any(|o| o.height.is_some());
+        let most = self.scene.characters.div_ceil(HURDLERS);
+        let mut failures = 0;
+        while low && !jumpers.is_empty() && failures < HURDLE_PATIENCE && self.goes_on(Phase::Seed) {
+            let count = self.crew.batch.min(most.saturating_sub(self.crew.tracks.tracks.len()));
+            if count == 0 {
+                return;
+            }
+            let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
+            let made = self.crew.work(count, |_, draft, rng| hurdle(draft, &jumpers, taste, rng), |_, _| true);
+            failures = if made > 0 { 0 } else { failures + count };
+        }
     }
 
     /// Adds people who meet until there is as much company as wished for.

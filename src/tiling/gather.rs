@@ -93,9 +93,11 @@ fn player(encore: Encore, k: usize, people: usize) -> usize {
 
 /// One role of a placed patch.
 #[derive(Clone, Copy)]
-struct Part {
-    role: u32,
-    entry: Port,
+pub(super) struct Part {
+    /// The role.
+    pub role: u32,
+    /// Where it begins.
+    pub entry: Port,
     exit: Port,
 }
 
@@ -109,7 +111,8 @@ fn step(library: &Library, ends: &[Port], encore: Encore, closing: usize) -> Vec
     parts(library, encore.kind, world_from_patch, tick - lead.begin)
 }
 
-fn parts(library: &Library, kind: u32, world_from_patch: Ground, clock: i32) -> Vec<Part> {
+/// The roles of a kind placed somewhere.
+pub(super) fn parts(library: &Library, kind: u32, world_from_patch: Ground, clock: i32) -> Vec<Part> {
     let part = |role| {
         let (entry, exit) = library.ports(role, world_from_patch, clock);
         Part { role, entry, exit }
@@ -129,10 +132,18 @@ pub(super) struct Wish {
 }
 
 /// Somebody's life so far.
-struct Life {
-    pieces: Vec<PieceId>,
+pub(super) struct Life {
+    /// The patches, in order.
+    pub pieces: Vec<PieceId>,
     begin: Port,
     end: Port,
+}
+
+impl Life {
+    /// One patch.
+    pub fn of(part: &Part, id: PieceId) -> Self {
+        Self { pieces: vec![id], begin: part.entry, end: part.exit }
+    }
 }
 
 /// Adds people who meet as wished, each present over the whole time.
@@ -147,8 +158,7 @@ pub(super) fn gather(
     let horizon = draft.base.domain.horizon;
     let mut together = company(&first, horizon);
     let ids = draft.add_patch(first.iter().map(|p| (p.role, p.entry)))?;
-    let life = |(p, id): (&Part, PieceId)| Life { pieces: vec![id], begin: p.entry, end: p.exit };
-    let mut lives: Vec<Life> = first.iter().zip(ids).map(life).collect();
+    let mut lives: Vec<Life> = first.iter().zip(ids).map(|(part, id)| Life::of(part, id)).collect();
     let mut kind = wish.kind;
     while together < wish.together && lives.iter().all(|l| l.end.tick < horizon - SEEN) {
         let Some((next, parts)) = go_on(draft, &mut lives, &encores.0[kind as usize], taste, rng) else { break };
@@ -261,7 +271,7 @@ fn join(
 }
 
 /// Leads somebody from the beginning of time to their first patch.
-fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     if life.begin.tick > 0 {
         let way = (0..TRIES).find_map(|_| draft.search(life.begin, Goal::Since(0), taste, rng))?;
         life.pieces.splice(..0, way);
@@ -270,7 +280,7 @@ fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) 
 }
 
 /// Leads somebody from their last patch to the end of time.
-fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+pub(super) fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let horizon = draft.base.domain.horizon;
     if life.end.tick < horizon {
         let way = (0..TRIES).find_map(|_| draft.search(life.end, Goal::Until(horizon), taste, rng))?;

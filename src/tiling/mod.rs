@@ -16,6 +16,8 @@ mod figure;
 mod footprint;
 mod gather;
 mod grid;
+mod hurdle;
+mod keyframe;
 mod library;
 mod mend;
 mod occupancy;

@@ -8,6 +8,7 @@ mod lift;
 mod meet;
 mod place;
 mod push;
+mod rows;
 mod sit;
 mod talk;
 mod trio;
@@ -30,6 +31,7 @@ pub(super) fn scenes() -> Vec<Scene> {
         push::scenes(),
         talk::scenes(),
         trio::scenes(),
+        rows::scenes(),
     ];
     all.into_iter().flatten().collect()
 }
