@@ -11,7 +11,7 @@ use rustc_hash::FxHashSet;
 
 use super::domain::Spot;
 use super::library::{Closing, Library, Move, Span};
-use super::piece::{Piece, Rigid};
+use super::piece::{Company, Piece, Rigid};
 use super::prefer::Stay;
 use super::view::View;
 use crate::geom::{Ground, wrap_angle};
@@ -108,27 +108,42 @@ impl Ord for Entry {
 }
 
 /// The search with its reusable buffers.
-#[derive(Default)]
 pub(super) struct Bridge {
     nodes: Vec<Node>,
     heap: BinaryHeap<Entry>,
     seen: FxHashSet<u64>,
     backward: bool,
+    company: Company,
     path: MotionPath,
+}
+
+impl Default for Bridge {
+    fn default() -> Self {
+        Self {
+            nodes: vec![],
+            heap: BinaryHeap::new(),
+            seen: FxHashSet::default(),
+            backward: false,
+            company: Company::NONE,
+            path: MotionPath::default(),
+        }
+    }
 }
 
 impl Bridge {
     /// A chain of free pieces, in order of time, from `from` to `goal`; `None` if none was found in `taste.expansions`.
     ///
-    /// Time O(expansions x moves x frames).
+    /// `company` has the patches of several people that the chain leads from and to. Time O(expansions x moves x frames).
     pub fn search(
         &mut self,
         view: View,
         from: Port,
         goal: Goal,
+        company: Company,
         taste: Taste,
         rng: &mut ChaCha8Rng,
     ) -> Option<Vec<Piece>> {
+        self.company = company;
         self.nodes.clear();
         self.heap.clear();
         self.seen.clear();
@@ -178,7 +193,20 @@ impl Bridge {
 
     fn piece(&self, view: View, node: u32) -> Piece {
         let (entry, begin) = self.entry(node);
-        Piece::rigid(view.library, view.domain, self.nodes[node as usize].role, NO_INSTANCE, entry, begin)
+        let role = self.nodes[node as usize].role;
+        Piece {
+            company: self.company_of(node),
+            ..Piece::rigid(view.library, view.domain, role, NO_INSTANCE, entry, begin)
+        }
+    }
+
+    /// The patches that a node's patch leads from and to: only the one next to where the search began is known.
+    fn company_of(&self, node: u32) -> Company {
+        match (self.nodes[node as usize].parent, self.backward) {
+            (0, false) => Company { to: NO_INSTANCE, ..self.company },
+            (0, true) => Company { from: NO_INSTANCE, ..self.company },
+            _ => Company::NONE,
+        }
     }
 
     /// True if the patch that leads to a node is in nobody's way.
@@ -189,7 +217,8 @@ impl Bridge {
         }
         let leaves_box = view.library.roles[role as usize].leaves_box();
         let (entry, begin) = self.entry(node);
-        if !leaves_box && !view.is_free_rigid(role, Rigid::new(view.library, role, entry, begin)) {
+        if !leaves_box && !view.is_free_rigid(role, Rigid::new(view.library, role, entry, begin), self.company_of(node))
+        {
             return false;
         }
         if !boxed {
@@ -264,7 +293,11 @@ impl Bridge {
         if !closing.strand.deform(from.at, to.at, &view.library.limits, &mut self.path) {
             return None;
         }
-        let pieces = split(view, closing, &self.path, from.tick, to.tick)?;
+        let mut pieces = split(view, closing, &self.path, from.tick, to.tick)?;
+        if node == 0 {
+            pieces[0].company.from = self.company.from;
+        }
+        pieces.last_mut()?.company.to = self.company.to;
         let free = |p: &Piece| view.is_free(p) && !(boxed && self.meets_own_way(view, node, p));
         pieces.iter().all(free).then_some(pieces)
     }
@@ -296,9 +329,20 @@ impl Span {
 
 /// Number of strands that lead from one port to another with little deformation: how easy the bridge will be.
 pub(super) fn easy_closings(library: &Library, from: Port, to: Port) -> usize {
+    easy(library, from, to).count()
+}
+
+/// True if at least `wanted` strands do.
+pub(super) fn has_easy_closings(library: &Library, from: Port, to: Port, wanted: usize) -> bool {
+    easy(library, from, to).take(wanted).count() == wanted
+}
+
+fn easy<'a>(library: &'a Library, from: Port, to: Port) -> impl Iterator<Item = &'a Span> {
     let (left, way) = (to.tick - from.tick, from.at.inverse().then(to.at));
     let closings = library.closings_between(from.group, to.group);
-    closings.spans.iter().filter(|span| span.leads(way, left, EASY_REACH, EASY_TURN)).count()
+    let farthest = TOP_SPEED * left as f32 / FPS + SLACK;
+    let spans = if way.position.length_squared() > farthest * farthest { &[] } else { closings.spans.as_slice() };
+    spans.iter().filter(move |span| span.leads(way, left, EASY_REACH, EASY_TURN))
 }
 
 /// Cuts a deformed strand into the pieces of its roles, sharing out the ticks in proportion to the sources'; `None` if

@@ -16,7 +16,7 @@ use super::bake::{Chains, segments_of};
 use super::boxes::depth_in;
 use super::domain::Spot;
 use super::faults::is_rushed;
-use super::figure::{Figure, REACH, TOLERANCE, frame_at};
+use super::figure::{Figure, REACH, TOLERANCE, frame_at, pairs_at};
 use crate::geom::Cuboid;
 use crate::motion::{Build, canonical};
 use crate::refine::{Body, Hold, Segment, fit, holds};
@@ -129,17 +129,19 @@ impl<'a> Fitting<'a> {
     /// All pairs, one or both of them changed, whose fitted bodies are in each other where the canonical ones are not.
     fn clashes(&self, changed: &[bool]) -> Vec<(usize, usize)> {
         let at_tick = |tick: i32| -> Vec<(usize, usize)> {
-            let mut figures: Vec<(usize, Figure)> =
-                (0..self.worn.len()).filter_map(|p| Some((p, self.figure(p, tick)?))).collect();
-            figures.sort_by(|a, b| a.1.left().total_cmp(&b.1.left()).then(a.0.cmp(&b.0)));
             let mut pairs = Vec::new();
-            for (i, (p, a)) in figures.iter().enumerate() {
-                for (q, b) in figures[i + 1..].iter().take_while(|(_, b)| b.left() < a.center.x + a.radius) {
-                    if (changed[*p] || changed[*q]) && self.is_clash((*p, a), (*q, b), tick) {
-                        pairs.push((*p.min(q), *p.max(q)));
+            let bodies = self.worn.iter().map(|w| &w.body);
+            pairs_at(
+                tick,
+                bodies,
+                changed,
+                |p| self.figure(p, tick),
+                |(p, a), (q, b)| {
+                    if self.is_clash((p, a), (q, b), tick) {
+                        pairs.push((p.min(q), p.max(q)));
                     }
-                }
-            }
+                },
+            );
             pairs
         };
         let horizon = self.chains.domain.horizon;

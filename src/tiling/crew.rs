@@ -23,8 +23,9 @@ pub(super) struct Crew<'a> {
     pub tracks: Tracks<'a>,
     /// How many changes are worked out at once: few enough that they seldom meet.
     pub batch: usize,
+    /// What all randomness comes from.
+    pub seed: u64,
     desks: Mutex<Vec<Desk>>,
-    seed: u64,
     /// Changes worked out so far: each has a stream of random numbers of its own.
     drawn: u64,
 }
@@ -33,33 +34,30 @@ impl<'a> Crew<'a> {
     /// A crew for an empty tiling. `area` in m^2.
     pub fn new(tracks: Tracks<'a>, area: f32, seed: u64) -> Self {
         let batch = ((area / ROOM) as usize).clamp(FEWEST, MOST);
-        Self { tracks, batch, desks: Mutex::default(), seed, drawn: 0 }
+        Self { tracks, batch, seed, desks: Mutex::default(), drawn: 0 }
     }
 
-    /// Works `count` changes out and makes those that are found and wanted: how many.
+    /// Works `count` changes out and makes those that are found and wanted; for each whether it was made.
     pub fn work(
         &mut self,
         count: usize,
         propose: impl Fn(usize, &mut Draft, &mut ChaCha8Rng) -> Option<()> + Sync,
         mut wanted: impl FnMut(&Tracks, &Change) -> bool,
-    ) -> usize {
+    ) -> Vec<bool> {
         let found: Vec<Option<Change>> = {
             let this = &*self;
             let one = |i: usize| this.propose(i, &propose);
             (0..count).into_par_iter().with_max_len(1).map(one).collect()
         };
         self.drawn += count as u64;
-        let mut made = 0;
-        for change in found.into_iter().flatten() {
-            made += usize::from(wanted(&self.tracks, &change) && self.tracks.apply(change));
-        }
-        made
+        let mut made = |change: Change| wanted(&self.tracks, &change) && self.tracks.apply(change);
+        found.into_iter().map(|change| change.is_some_and(&mut made)).collect()
     }
 
     /// Works one change out in as many ways as are worked out at once, and makes the first that is found.
     pub fn work_one(&mut self, propose: impl Fn(&mut Draft, &mut ChaCha8Rng) -> Option<()> + Sync) -> bool {
         let version = self.tracks.version();
-        self.work(FEWEST, |_, draft, rng| propose(draft, rng), |tracks, _| tracks.version() == version) > 0
+        self.work(FEWEST, |_, draft, rng| propose(draft, rng), |tracks, _| tracks.version() == version).contains(&true)
     }
 
     fn propose(

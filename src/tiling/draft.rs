@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::bridge::{Bridge, Goal, NO_INSTANCE, Port, Taste};
 use super::occupancy::PieceId;
-use super::piece::Piece;
+use super::piece::{Company, Piece};
 use super::sketch::{Mark, Sketch};
 use super::tracks::{Change, NEWCOMER, TrackId, Tracks, Window};
 use super::view::View;
@@ -78,9 +78,16 @@ impl<'a> Draft<'a> {
     }
 
     /// Searches a chain (see [`Bridge::search`]) among all bodies now seen.
-    pub fn search(&mut self, from: Port, goal: Goal, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Vec<PieceId>> {
+    pub fn search(
+        &mut self,
+        from: Port,
+        goal: Goal,
+        company: Company,
+        taste: Taste,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Vec<PieceId>> {
         let view = View { sketch: &self.desk.sketch, ..self.base.view() };
-        let chain = self.desk.bridge.search(view, from, goal, taste, rng)?;
+        let chain = self.desk.bridge.search(view, from, goal, company, taste, rng)?;
         Some(chain.into_iter().map(|piece| self.add(piece)).collect())
     }
 
@@ -125,11 +132,13 @@ impl<'a> Draft<'a> {
         let Window { track, from, to } = window;
         let (begin, end) = (self.base.port(track, from), self.base.port(track, to));
         let open = to == self.base.tracks[track].len();
-        let way = match (from == 0, open) {
-            (_, true) => self.search(begin, Goal::Until(self.base.domain.horizon), taste, rng)?,
-            (true, false) => self.search(end, Goal::Since(0), taste, rng)?,
-            (false, false) => self.search(begin, Goal::Port(end), taste, rng)?,
+        let company = Company { from: self.base.company_before(track, from), to: self.base.company_after(track, to) };
+        let (begin, goal) = match (from == 0, open) {
+            (_, true) => (begin, Goal::Until(self.base.domain.horizon)),
+            (true, false) => (end, Goal::Since(0)),
+            (false, false) => (begin, Goal::Port(end)),
         };
+        let way = self.search(begin, goal, company, taste, rng)?;
         let pieces = &self.base.tracks[track];
         self.set_track(track, [&pieces[..from], &way, &pieces[to..]].concat());
         Some(())

@@ -18,10 +18,11 @@ use super::draft::Draft;
 use super::enrich::enrich;
 use super::gather::{Encores, Wish, gather};
 use super::hurdle::{hurdle, jumpers};
-use super::keyframe::keyframe;
+use super::keyframe::keyframes;
 use super::library::Library;
 use super::mend::{dissolve, mend};
 use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
+use super::plan::Plan;
 use super::rehearsal::Rehearsal;
 use super::seed::seed_person;
 use super::tracks::{Tracks, Window};
@@ -31,29 +32,27 @@ use crate::{Error, Result};
 
 /// Rounds of tries for everybody in a placed patch to find their ways.
 const KEYFRAME_TRIES: usize = 25;
+/// States expanded for each of the ways.
+const KEYFRAME_EXPANSIONS: usize = 600;
 /// One in so many people jumps over something, where there is something low.
 const HURDLERS: usize = 6;
 /// Failed tries in a row after which nobody more jumps.
 const HURDLE_PATIENCE: usize = 200;
 /// Failed gatherings in a row after which people come alone.
-const GATHER_PATIENCE: usize = 400;
+const GATHER_PATIENCE: usize = 80;
 /// States expanded to lead people to and from where they meet.
 const GATHER_EXPANSIONS: usize = 300;
-/// Least and largest share of their time that people who stay together do so, about.
-const TOGETHER: [f32; 2] = [0.35, 0.85];
-/// The share, about, of people who only meet in passing.
-const PASSING: f32 = 0.15;
-/// Most gatherings in passing.
-const MOST_PASSING: f32 = 0.5;
-/// By how much more company is provided for than is needed: some gatherings do not get as far as they should.
-const RESERVE: f32 = 1.4;
+/// Where those to come would have to be together for more than this share of their time, no more are gathered.
+const HOPELESS: f32 = 0.7;
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 4000;
 /// Every so many people one is wished for who begins with a box in the hands, for so many tries.
 const LADEN_EVERY: usize = 20;
 const LADEN_PATIENCE: usize = 60;
 const LADEN_EXPANSIONS: usize = 300;
-/// Failed tries per person in a row after which no further patch of several people is wished for.
+/// Failed tries per person in a row after which no further patch of several people is wished for: before all people are
+/// there, and at the end.
+const FIRST_PATIENCE: usize = 40;
 const ENRICH_PATIENCE: usize = 80;
 /// Failures per person in a row after which people are led other ways.
 const STIR_AFTER: usize = 14;
@@ -175,16 +174,22 @@ fn engine(
     let crew = Crew::new(Tracks::new(&library, domain), scene.region.area(), options.seed);
     let taste = Taste { calm: calm(scene), expansions: 60 };
     let mut engine = Engine { scene, crew, taste, clock };
-    let missing = engine.keyframes();
+    let placed = engine.keyframes();
     engine.hurdle();
     engine.gather();
+    engine.tell("gather");
+    engine.enrich(FIRST_PATIENCE);
+    engine.tell("enrich");
     engine.seed();
-    engine.enrich();
+    engine.tell("seed");
+    engine.enrich(ENRICH_PATIENCE);
+    engine.tell("enrich");
     let Rehearsal { played, faults, .. } = engine.finish();
+    engine.tell("finish");
     let Engine { crew, clock, .. } = engine;
-    let status = match missing {
-        Some(problem) => Status::Imperfect(problem),
-        None => status(crew.tracks.chains(), scene, faults.len()),
+    let status = match placed {
+        true => status(crew.tracks.chains(), scene, faults.len()),
+        false => Status::Imperfect("no ways were found to and from the placed patches".into()),
     };
     let crowd = bake(crew.tracks.chains(), scene, options.seed, played);
     Outcome { crowd, status, danglings: 0, interpenetrations: faults.len(), solve_secs: clock.secs() }
@@ -218,6 +223,19 @@ struct Engine<'a> {
 }
 
 impl Engine<'_> {
+    fn tell(&self, what: &str) {
+        if std::env::var("V").is_ok() {
+            let t = &self.crew.tracks;
+            eprintln!(
+                "{:.2} {what}: {} people, {:.3} of {:.3}",
+                self.clock.secs(),
+                t.tracks.len(),
+                t.company() as f32,
+                self.company_wish()
+            );
+        }
+    }
+
     fn goes_on(&mut self, phase: Phase) -> bool {
         let tracks = &self.crew.tracks;
         self.clock.goes_on(|| state(tracks, phase))
@@ -233,26 +251,21 @@ impl Engine<'_> {
         self.scene.characters.saturating_sub(self.crew.tracks.tracks.len())
     }
 
-    /// Puts in what the scene has placed; what of it found no way, if anything.
-    fn keyframes(&mut self) -> Option<String> {
-        let taste = Taste { expansions: MEND_EXPANSIONS, ..self.taste };
-        let mut missing = vec![];
-        for placed in &self.scene.placed {
-            let found = (0..KEYFRAME_TRIES).any(|_| {
-                self.goes_on(Phase::Seed) && self.crew.work_one(|draft, rng| keyframe(draft, placed, taste, rng))
-            });
-            if !found {
-                missing.push(format!("{:?} at {} s", placed.kind, placed.secs));
-            }
-        }
-        (!missing.is_empty()).then(|| format!("no way was found for everybody to and from {}", missing.join(", ")))
+    /// Puts in what the scene has placed; false if not everybody found ways to and from it.
+    fn keyframes(&mut self) -> bool {
+        let placed = &self.scene.placed;
+        let taste = Taste { expansions: KEYFRAME_EXPANSIONS, ..self.taste };
+        placed.is_empty()
+            || (0..KEYFRAME_TRIES).any(|_| {
+                self.goes_on(Phase::Seed) && self.crew.work_one(|draft, rng| keyframes(draft, placed, taste, rng))
+            })
     }
 
     /// Adds people who jump over what is low enough, if there is such.
     fn hurdle(&mut self) {
         let jumpers = jumpers(self.crew.tracks.library);
         let low = self.scene.obstacles.iter().any(|o| o.height.is_some());
-        let most = self.scene.characters.div_ceil(HURDLERS);
+        let most = self.crew.tracks.tracks.len() + self.people_left().div_ceil(HURDLERS);
         let mut failures = 0;
         while low && !jumpers.is_empty() && failures < HURDLE_PATIENCE && self.goes_on(Phase::Seed) {
             let count = self.crew.batch.min(most.saturating_sub(self.crew.tracks.tracks.len()));
@@ -261,7 +274,7 @@ impl Engine<'_> {
             }
             let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
             let made = self.crew.work(count, |_, draft, rng| hurdle(draft, &jumpers, taste, rng), |_, _| true);
-            failures = if made > 0 { 0 } else { failures + count };
+            failures = if made.contains(&true) { 0 } else { failures + count };
         }
     }
 
@@ -273,22 +286,23 @@ impl Engine<'_> {
             return;
         }
         let encores = Encores::new(library);
+        let mut plan = Plan::new(library, &encores, self.crew.tracks.domain.horizon, self.crew.seed);
         let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
         let mut failures = 0;
         while self.crew.tracks.company() < wish && failures < GATHER_PATIENCE && self.goes_on(Phase::Seed) {
             let (left, tracks) = (self.people_left(), &self.crew.tracks);
-            if left < 2 {
+            let need = wish.saturating_sub(tracks.company()) as f32 / (left * tracks.domain.horizon as usize) as f32;
+            if left < 2 || need > HOPELESS {
                 break;
             }
-            let need = (wish - tracks.company()) as f32 / (left * tracks.domain.horizon as usize) as f32;
-            let plan = Plan { encores: &encores, horizon: tracks.domain.horizon, need };
-            let count = self.crew.batch.min(left.div_ceil(2));
+            let wishes: Vec<Wish> = (0..self.crew.batch.min(left.div_ceil(2))).map(|_| plan.draw(need)).collect();
             let made = self.crew.work(
-                count,
-                |_, draft, rng| gather(draft, &encores, plan.draw(library, rng), taste, rng),
+                wishes.len(),
+                |i, draft, rng| gather(draft, &encores, wishes[i], taste, rng),
                 |tracks, change| tracks.tracks.len() + change.newcomers() <= most && tracks.company() < wish,
             );
-            failures = if made > 0 { 0 } else { failures + count };
+            plan.learn(&wishes, &made);
+            failures = if made.contains(&true) { 0 } else { failures + made.len() };
         }
     }
 
@@ -307,20 +321,20 @@ impl Engine<'_> {
                 |_, draft, rng| seed_person(draft, laden, taste, rng),
                 |tracks, _| tracks.tracks.len() < most,
             );
-            failures = if made > 0 { 0 } else { failures + count };
+            failures = if made.contains(&true) { 0 } else { failures + count };
         }
     }
 
     /// Adds patches of several people until there is as much company as wished for: once through time from its
     /// beginning, when what comes after is free, then wherever there is room.
-    fn enrich(&mut self) {
+    fn enrich(&mut self, patience: usize) {
         let (people, last) = (self.crew.tracks.tracks.len(), self.crew.tracks.domain.horizon - SWEEP_TICKS / 2);
         if self.crew.tracks.library.multi.is_empty() || people == 0 {
             return;
         }
         let (wish, tries, taste) = (self.company_wish(), SWEEP_TRIES * people, self.taste);
         let (mut done, mut failures, mut since_stir) = (0, 0, 0);
-        while self.crew.tracks.company() < wish && failures < ENRICH_PATIENCE * people && self.goes_on(Phase::Enrich) {
+        while self.crew.tracks.company() < wish && failures < patience * people && self.goes_on(Phase::Enrich) {
             let ticks = |i: usize| match (done + i) * last as usize / tries {
                 tick if tick < last as usize => tick as i32..(tick as i32 + SWEEP_TICKS).min(last),
                 _ => 0..last,
@@ -332,7 +346,7 @@ impl Engine<'_> {
                 |tracks, _| tracks.company() < wish,
             );
             done += count;
-            (failures, since_stir) = if made > 0 { (0, 0) } else { (failures + count, since_stir + count) };
+            (failures, since_stir) = if made.contains(&true) { (0, 0) } else { (failures + count, since_stir + count) };
             if since_stir > STIR_AFTER * people {
                 since_stir = 0;
                 self.crew.work(people, |track, draft, rng| stir(draft, track, taste, rng), |_, _| true);
@@ -343,18 +357,20 @@ impl Engine<'_> {
     /// Mends, and where that cost more patches of several people than it may, puts new ones in and mends again.
     fn finish(&mut self) -> Rehearsal {
         let mut rehearsal = Rehearsal::new(&self.crew.tracks);
+        self.tell(&format!("rehearsed {}", rehearsal.faults.len()));
         self.mend(&mut rehearsal);
         for _ in 0..REFILLS {
             let share = self.crew.tracks.multi_person_share();
             if share >= self.scene.interaction || !rehearsal.faults.is_empty() {
                 break;
             }
-            self.enrich();
+            // People may have been led other ways even if no patch found room.
+            self.enrich(ENRICH_PATIENCE);
+            rehearsal.repeat(&self.crew.tracks);
+            self.mend(&mut rehearsal);
             if self.crew.tracks.multi_person_share() <= share {
                 break;
             }
-            rehearsal.repeat(&self.crew.tracks);
-            self.mend(&mut rehearsal);
         }
         rehearsal
     }
@@ -374,35 +390,8 @@ impl Engine<'_> {
             };
             self.crew.work(faults.len(), propose, |_, _| true);
             rehearsal.repeat(&self.crew.tracks);
+            self.tell(&format!("mended to {}", rehearsal.faults.len()));
         }
-    }
-}
-
-/// What gatherings are to be like.
-struct Plan<'a> {
-    encores: &'a Encores,
-    horizon: i32,
-    /// Share of their time that those who are still to come must spend together on average.
-    need: f32,
-}
-
-impl Plan<'_> {
-    /// Some in passing, others of people who stay together: more of these the more company is needed.
-    fn draw(&self, library: &Library, rng: &mut ChaCha8Rng) -> Wish {
-        let [least, most] = TOGETHER;
-        let average = 0.5 * (least + most);
-        let in_passing = ((average - RESERVE * self.need) / (average - PASSING)).clamp(0.0, MOST_PASSING);
-        let sociable = rng.random_range(0.0..1.0) >= in_passing;
-        let of_sort: Vec<u32> =
-            library.multi.iter().copied().filter(|&k| self.encores.is_sociable(k) == sociable).collect();
-        let kinds = if of_sort.is_empty() { &library.multi } else { &of_sort };
-        let kind = kinds[rng.random_range(0..kinds.len())];
-        if !self.encores.is_sociable(kind) {
-            return Wish { kind, together: 0, least: 0 };
-        }
-        let least = least.max(self.need.min(most));
-        let ticks = |share: f32| (share * self.horizon as f32) as i32;
-        Wish { kind, together: ticks(rng.random_range(least..=most)), least: ticks(least * 0.7) }
     }
 }
 

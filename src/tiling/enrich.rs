@@ -13,7 +13,7 @@ use super::domain::Spot;
 use super::draft::Draft;
 use super::library::Role;
 use super::occupancy::PieceId;
-use super::piece::Piece;
+use super::piece::{Company, Piece};
 use super::prefer::Stay;
 use super::tracks::{TrackId, Tracks, Window};
 use crate::geom::Ground;
@@ -236,9 +236,12 @@ fn perform(draft: &mut Draft, parts: &[Part], taste: Taste, rng: &mut ChaCha8Rng
     for (i, part) in parts.iter().enumerate() {
         let future = &parts[futures[i]];
         let mut way = tracks.tracks[part.track][..part.keep_before].to_vec();
-        way.extend(lead_in(draft, part, taste, rng)?);
+        let here = draft.piece(placed[i]).instance;
+        let from = tracks.company_before(part.track, part.keep_before);
+        way.extend(lead_in(draft, part, Company { from, to: here }, taste, rng)?);
         way.push(placed[i]);
-        way.extend(lead_out(draft, part, future, taste, rng)?);
+        let to = tracks.company_after(future.track, future.keep_after);
+        way.extend(lead_out(draft, part, future, Company { from: here, to }, taste, rng)?);
         way.extend(&tracks.tracks[future.track][future.keep_after..]);
         draft.set_track(part.track, way);
     }
@@ -304,23 +307,36 @@ fn futures(tracks: &Tracks, parts: &[Part]) -> Vec<usize> {
     order
 }
 
-fn lead_in(draft: &mut Draft, part: &Part, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Vec<PieceId>> {
+fn lead_in(
+    draft: &mut Draft,
+    part: &Part,
+    company: Company,
+    taste: Taste,
+    rng: &mut ChaCha8Rng,
+) -> Option<Vec<PieceId>> {
     let from = draft.base.port(part.track, part.keep_before);
     if part.entry.tick <= 0 || from == part.entry {
         return Some(vec![]);
     }
     match part.keep_before {
-        0 => draft.search(part.entry, Goal::Since(0), taste, rng),
-        _ => draft.search(from, Goal::Port(part.entry), taste, rng),
+        0 => draft.search(part.entry, Goal::Since(0), company, taste, rng),
+        _ => draft.search(from, Goal::Port(part.entry), company, taste, rng),
     }
 }
 
-fn lead_out(draft: &mut Draft, part: &Part, future: &Part, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Vec<PieceId>> {
+fn lead_out(
+    draft: &mut Draft,
+    part: &Part,
+    future: &Part,
+    company: Company,
+    taste: Taste,
+    rng: &mut ChaCha8Rng,
+) -> Option<Vec<PieceId>> {
     let (tracks, horizon) = (draft.base, draft.base.domain.horizon);
     let open = future.keep_after == tracks.tracks[future.track].len();
     if open && part.exit.tick >= horizon {
         return Some(vec![]);
     }
     let goal = if open { Goal::Until(horizon) } else { Goal::Port(tracks.port(future.track, future.keep_after)) };
-    draft.search(part.exit, goal, taste, rng)
+    draft.search(part.exit, goal, company, taste, rng)
 }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::bake::Chains;
 use super::boxes::in_the_way;
 use super::domain::{Domain, Spot};
-use super::figure::{Figure, REACH, TOLERANCE, frame_at};
+use super::figure::{Figure, REACH, TOLERANCE, pairs_at};
 use super::library::Library;
 use super::piece::Piece;
 use super::tracks::TrackId;
@@ -17,8 +17,6 @@ use crate::motion::{JOINT_COUNT, canonical};
 use crate::patch::turn_between;
 use crate::refine::{Body, Performance};
 
-/// Bodies whose hips are further apart than this never touch, metres.
-const TOUCHING_HIPS: f32 = 2.2;
 /// Joints may turn this much faster than in the captures.
 const RUSH: f32 = 1.15;
 
@@ -80,41 +78,22 @@ fn is_in_wall(body: &Body, domain: &Domain, frame: usize) -> bool {
 /// True if from the frame before a joint turns or the hips move `rush` times faster than in the captures.
 pub(super) fn is_rushed(body: &Body, library: &Library, frame: usize, rush: f32) -> bool {
     let Some(last) = frame.checked_sub(1) else { return false };
-    let longest_step = rush * library.fastest_step + library.limits.stretch;
+    let longest_step = rush * library.fastest_hips + library.limits.stretch;
     let (before, now) = (body.pose(last), body.pose(frame));
     body.root[frame].distance(body.root[last]) > longest_step
         || (0..JOINT_COUNT).any(|j| turn_between(before[j], now[j]) > rush * library.fastest[j])
 }
 
-/// Who is in whom at a tick, somebody new in each pair. Bodies are sorted along x so that near ones are neighbours.
+/// Who is in whom at a tick, somebody new in each pair.
 fn touching(chains: Chains, bodies: &[Body], is_new: &[bool], tick: i32) -> Vec<(TrackId, TrackId)> {
-    let place = |t: TrackId| frame_at(&bodies[t], tick).map(|f| Vec2::new(bodies[t].root[f].x, bodies[t].root[f].z));
-    let mut present: Vec<(Vec2, TrackId)> = (0..bodies.len()).filter_map(|t| Some((place(t)?, t))).collect();
-    present.sort_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.1.cmp(&b.1)));
-    let mut figures: Vec<Option<Figure>> = present.iter().map(|_| None).collect();
-    let figure = |figures: &mut [Option<Figure>], i: usize| {
-        if figures[i].is_none() {
-            figures[i] = Figure::of(&bodies[present[i].1], canonical(), tick);
-        }
-    };
     let mut pairs = Vec::new();
-    for (i, &(here, a)) in present.iter().enumerate() {
-        for (k, &(there, b)) in present[i + 1..].iter().enumerate() {
-            if there.x - here.x > TOUCHING_HIPS {
-                break;
-            }
-            if !(is_new[a] || is_new[b]) || here.distance_squared(there) > TOUCHING_HIPS * TOUCHING_HIPS {
-                continue;
-            }
-            figure(&mut figures, i);
-            figure(&mut figures, i + 1 + k);
-            let (Some(first), Some(second)) = (&figures[i], &figures[i + 1 + k]) else { continue };
-            let depth = first.depth_into(second);
-            if depth > TOLERANCE && depth > TOLERANCE + captured_depth(chains, (a, b), tick) {
-                pairs.push((a.min(b), a.max(b)));
-            }
+    let figure = |t: TrackId| Figure::of(&bodies[t], canonical(), tick);
+    pairs_at(tick, bodies.iter(), is_new, figure, |(a, first), (b, second)| {
+        let depth = first.depth_into(second);
+        if depth > TOLERANCE && depth > TOLERANCE + captured_depth(chains, (a, b), tick) {
+            pairs.push((a.min(b), a.max(b)));
         }
-    }
+    });
     pairs
 }
 

@@ -9,23 +9,24 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use super::bridge::{Goal, Port, Taste, easy_closings};
+use super::bridge::{Goal, Port, Taste, has_easy_closings};
 use super::domain::Spot;
 use super::draft::Draft;
 use super::library::Library;
 use super::occupancy::PieceId;
-use super::piece::Rigid;
+use super::piece::{Company, Rigid};
 use super::prefer::Stay;
 use crate::geom::Ground;
 
 /// Places tried for a first patch.
 const PLACES: usize = 200;
 /// Ways from one patch to the next that are tried until one is free.
-const STEPS: usize = 300;
+const STEPS: usize = 200;
 /// Free ones among them that are tried to be walked.
 const ENCORES: usize = 4;
-/// Ways tried out to tell whether one kind can follow another, and how many must lead there.
-const SAMPLES: usize = 8;
+/// Ways that are tried out to tell whether one kind can follow another.
+const SAMPLES: usize = 16;
+/// Ways from a kind on that let its people stay together.
 const ENOUGH: usize = 3;
 /// A way that this many closings lead along is easy.
 const EASY: usize = 2;
@@ -36,15 +37,17 @@ const WALL_ROOM: f32 = 0.4;
 /// Ticks of the first patch that are seen at least.
 const SEEN: i32 = 15;
 
-/// A kind that the people of another can go on with at once.
+/// A kind that the people of another can go on with at once, and how.
 #[derive(Clone, Copy)]
 struct Encore {
     kind: u32,
     /// Who plays its first role: the second role is played by the next of them, and so on round.
     first: u32,
+    /// The closing by which they go there; it need not be deformed. The others have easy ways as well.
+    closing: u32,
 }
 
-/// By kind, the kinds that its people can go on with at once, as people do who stand together.
+/// By kind, what its people can go on with at once, as people do who stand together.
 pub(super) struct Encores(Vec<Vec<Encore>>);
 
 impl Encores {
@@ -56,30 +59,31 @@ impl Encores {
 
     /// True if the people of a kind can stay together after it.
     pub fn is_sociable(&self, kind: u32) -> bool {
-        !self.0[kind as usize].is_empty()
+        self.0[kind as usize].len() >= ENOUGH
     }
 }
 
 fn of_kind(library: &Library, kind: u32) -> Vec<Encore> {
     let ends: Vec<Port> = library.roles_of(kind).map(|role| library.ports(role, Ground::IDENTITY, 0).1).collect();
-    let people = ends.len();
-    let others = library.multi.iter().filter(|&&k| library.set.kinds[k as usize].people() == people);
-    let encores = others.flat_map(|&kind| (0..people as u32).map(move |first| Encore { kind, first }));
-    encores.filter(|&encore| follows(library, &ends, encore)).collect()
+    let people = ends.len() as u32;
+    let others = library.multi.iter().filter(|&&k| library.set.kinds[k as usize].people() == ends.len());
+    let mut encores = Vec::new();
+    for (kind, first) in others.flat_map(|&kind| (0..people).map(move |first| (kind, first))) {
+        let count = library.closings_between(ends[first as usize].group, first_group(library, kind)).all.len();
+        let samples = SAMPLES.min(count);
+        let sampled = (0..samples).map(|k| Encore { kind, first, closing: (k * count / samples) as u32 });
+        encores.extend(sampled.filter(|&encore| is_easy(library, &ends, encore)));
+    }
+    encores
 }
 
-fn follows(library: &Library, ends: &[Port], encore: Encore) -> bool {
-    let count =
-        library.closings_between(ends[encore.first as usize].group, first_group(library, encore.kind)).all.len();
-    let samples = SAMPLES.min(count);
-    let good = (0..samples).filter(|k| {
-        let parts = step(library, ends, encore, k * count / samples);
-        parts.iter().enumerate().all(|(k, part)| {
-            let from = ends[player(encore, k, ends.len())];
-            part.entry.tick > from.tick && easy_closings(library, from, part.entry) >= EASY
-        })
-    });
-    good.count() >= ENOUGH
+/// True if everybody has easy ways from where they are into an encore.
+fn is_easy(library: &Library, ends: &[Port], encore: Encore) -> bool {
+    let parts = step(library, ends, encore);
+    parts.iter().enumerate().skip(1).all(|(k, part)| {
+        let from = ends[player(encore, k, ends.len())];
+        part.entry.tick > from.tick && has_easy_closings(library, from, part.entry, EASY)
+    })
 }
 
 fn first_group(library: &Library, kind: u32) -> u32 {
@@ -98,14 +102,15 @@ pub(super) struct Part {
     pub role: u32,
     /// Where it begins.
     pub entry: Port,
-    exit: Port,
+    /// Where it ends.
+    pub exit: Port,
 }
 
-/// An encore as it lies if who plays its first role goes there by a closing that is not deformed.
-fn step(library: &Library, ends: &[Port], encore: Encore, closing: usize) -> Vec<Part> {
+/// An encore as it lies if who plays its first role goes there by the closing as it is.
+fn step(library: &Library, ends: &[Port], encore: Encore) -> Vec<Part> {
     let from = ends[encore.first as usize];
     let lead = &library.roles[library.first_role[encore.kind as usize] as usize];
-    let closings = library.closings_between(from.group, lead.entry_group);
+    let (closings, closing) = (library.closings_between(from.group, lead.entry_group), encore.closing as usize);
     let world_from_patch = from.at.then(closings.spans[closing].exit).then(lead.entry.inverse());
     let tick = from.tick + closings.all[closing].strand.frames() as i32 - 1;
     parts(library, encore.kind, world_from_patch, tick - lead.begin)
@@ -131,18 +136,22 @@ pub(super) struct Wish {
     pub least: i32,
 }
 
-/// Somebody's life so far.
+/// Somebody's life so far. Those who are together come in the order of the roles that they played last.
 pub(super) struct Life {
     /// The patches, in order.
     pub pieces: Vec<PieceId>,
     begin: Port,
-    end: Port,
+    /// Where it ends so far.
+    pub end: Port,
+    /// The first and the last patch of several people.
+    pub company: Company,
 }
 
 impl Life {
     /// One patch.
-    pub fn of(part: &Part, id: PieceId) -> Self {
-        Self { pieces: vec![id], begin: part.entry, end: part.exit }
+    pub fn of(part: &Part, id: PieceId, instance: u32) -> Self {
+        let company = Company { from: instance, to: instance };
+        Self { pieces: vec![id], begin: part.entry, end: part.exit, company }
     }
 }
 
@@ -156,13 +165,14 @@ pub(super) fn gather(
 ) -> Option<()> {
     let first = (0..PLACES).find_map(|_| place(draft, wish, rng))?;
     let horizon = draft.base.domain.horizon;
-    let mut together = company(&first, horizon);
+    let mut together = time_together(&first, horizon);
     let ids = draft.add_patch(first.iter().map(|p| (p.role, p.entry)))?;
-    let mut lives: Vec<Life> = first.iter().zip(ids).map(|(part, id)| Life::of(part, id)).collect();
+    let here = draft.piece(ids[0]).instance;
+    let mut lives: Vec<Life> = first.iter().zip(ids).map(|(part, id)| Life::of(part, id, here)).collect();
     let mut kind = wish.kind;
     while together < wish.together && lives.iter().all(|l| l.end.tick < horizon - SEEN) {
         let Some((next, parts)) = go_on(draft, &mut lives, &encores.0[kind as usize], taste, rng) else { break };
-        together += company(&parts, horizon);
+        together += time_together(&parts, horizon);
         kind = next;
     }
     if together < wish.least {
@@ -179,7 +189,7 @@ pub(super) fn gather(
 }
 
 /// Ticks of a patch within the domain's time, on average over its people.
-fn company(parts: &[Part], horizon: i32) -> i32 {
+fn time_together(parts: &[Part], horizon: i32) -> i32 {
     let ticks = |p: &Part| p.exit.tick.clamp(0, horizon) - p.entry.tick.clamp(0, horizon);
     parts.iter().map(ticks).sum::<i32>() / parts.len() as i32
 }
@@ -205,9 +215,10 @@ fn is_free(draft: &Draft, parts: &[Part]) -> bool {
     let (library, domain) = (draft.base.library, draft.base.domain);
     let outside = |tick: i32| tick < 0 || tick > domain.horizon;
     let room = |p: &Port| outside(p.tick) || domain.holds(Spot::ground(p.tick), p.at.position, WALL_ROOM);
+    let rigid = |p: &Part| Rigid::new(library, p.role, p.entry.at, p.entry.tick);
     let view = draft.view();
     parts.iter().all(|p| room(&p.entry) && room(&p.exit))
-        && parts.iter().all(|p| view.is_free_rigid(p.role, Rigid::new(library, p.role, p.entry.at, p.entry.tick)))
+        && parts.iter().all(|p| view.is_free_rigid(p.role, rigid(p), Company::NONE))
 }
 
 /// Leads the people from where they are into another patch together; its kind and parts.
@@ -226,21 +237,19 @@ fn go_on(
     let mut tries = 0;
     for _ in 0..STEPS {
         let encore = encores[rng.random_range(0..encores.len())];
-        let from = ends[encore.first as usize];
-        let closings = library.closings_between(from.group, first_group(library, encore.kind));
-        let parts = step(library, &ends, encore, rng.random_range(0..closings.all.len()));
+        let parts = step(library, &ends, encore);
         let from = |k: usize| ends[player(encore, k, ends.len())];
-        let leads =
-            |(k, p): (usize, &Part)| p.entry.tick > from(k).tick && easy_closings(library, from(k), p.entry) >= EASY;
-        if !parts.iter().enumerate().all(leads) || !is_free(draft, &parts) {
+        if !is_free(draft, &parts) {
             continue;
         }
         let mark = draft.mark();
-        if let Some(ways) = join(draft, &parts, from, taste, rng) {
-            for (k, (way, part)) in ways.into_iter().zip(&parts).enumerate() {
-                let life = &mut lives[player(encore, k, ends.len())];
+        if let Some(ways) = join(draft, &parts, from, lives[0].company.to, taste, rng) {
+            let here = draft.piece(ways[0][ways[0].len() - 1]).instance;
+            // In the order of the roles that they play now.
+            lives.rotate_left(encore.first as usize);
+            for (life, (way, part)) in lives.iter_mut().zip(ways.into_iter().zip(&parts)) {
                 life.pieces.extend(way);
-                life.end = part.exit;
+                (life.end, life.company.to) = (part.exit, here);
             }
             return Some((encore.kind, parts));
         }
@@ -258,12 +267,14 @@ fn join(
     draft: &mut Draft,
     parts: &[Part],
     from: impl Fn(usize) -> Port,
+    before: u32,
     taste: Taste,
     rng: &mut ChaCha8Rng,
 ) -> Option<Vec<Vec<PieceId>>> {
     let ids = draft.add_patch(parts.iter().map(|p| (p.role, p.entry)))?;
+    let company = Company { from: before, to: draft.piece(ids[0]).instance };
     let mut lead = |(k, part): (usize, &Part)| {
-        let mut way = draft.search(from(k), Goal::Port(part.entry), taste, rng)?;
+        let mut way = draft.search(from(k), Goal::Port(part.entry), company, taste, rng)?;
         way.push(ids[k]);
         Some(way)
     };
@@ -273,7 +284,8 @@ fn join(
 /// Leads somebody from the beginning of time to their first patch.
 pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     if life.begin.tick > 0 {
-        let way = (0..TRIES).find_map(|_| draft.search(life.begin, Goal::Since(0), taste, rng))?;
+        let company = Company { to: life.company.from, ..Company::NONE };
+        let way = (0..TRIES).find_map(|_| draft.search(life.begin, Goal::Since(0), company, taste, rng))?;
         life.pieces.splice(..0, way);
     }
     Some(())
@@ -283,7 +295,8 @@ pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut C
 pub(super) fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let horizon = draft.base.domain.horizon;
     if life.end.tick < horizon {
-        let way = (0..TRIES).find_map(|_| draft.search(life.end, Goal::Until(horizon), taste, rng))?;
+        let company = Company { from: life.company.to, ..Company::NONE };
+        let way = (0..TRIES).find_map(|_| draft.search(life.end, Goal::Until(horizon), company, taste, rng))?;
         life.pieces.extend(way);
     }
     Some(())

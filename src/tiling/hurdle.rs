@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use super::bridge::{Goal, NO_INSTANCE, Taste};
 use super::draft::Draft;
 use super::library::Library;
-use super::piece::{Piece, Rigid};
+use super::piece::{Company, Piece, Rigid};
 use crate::geom::Ground;
 
 /// Places, times and headings tried for one jump.
@@ -28,10 +28,11 @@ pub(super) fn hurdle(draft: &mut Draft, jumpers: &[u32], taste: Taste, rng: &mut
     let (library, horizon) = (draft.base.library, draft.base.domain.horizon);
     let (entry, exit) = (library.entry_of(&jump), library.exit_of(&jump));
     let id = draft.add(jump);
-    let mut pieces = if entry.tick > 0 { draft.search(entry, Goal::Since(0), taste, rng)? } else { vec![] };
+    let mut pieces =
+        if entry.tick > 0 { draft.search(entry, Goal::Since(0), Company::NONE, taste, rng)? } else { vec![] };
     pieces.push(id);
     if exit.tick < horizon {
-        pieces.extend(draft.search(exit, Goal::Until(horizon), taste, rng)?);
+        pieces.extend(draft.search(exit, Goal::Until(horizon), Company::NONE, taste, rng)?);
     }
     draft.push_track(pieces);
     Some(())
@@ -48,7 +49,7 @@ fn jump(draft: &Draft, jumpers: &[u32], rng: &mut ChaCha8Rng) -> Option<Piece> {
     let place = domain.over_obstacle(tick, aside, rng.next_u32() as usize)?;
     let entry = Ground::new(place, rng.random_range(-PI..PI)).then(source.path.at(top).inverse());
     let begin = tick - top as i32;
-    let free = draft.view().is_free_rigid(role, Rigid::new(library, role, entry, begin));
+    let free = draft.view().is_free_rigid(role, Rigid::new(library, role, entry, begin), Company::NONE);
     free.then(|| Piece::rigid(library, domain, role, NO_INSTANCE, entry, begin))
 }
 

@@ -156,6 +156,8 @@ pub(super) struct Library<'a> {
     pub fastest: [f32; JOINT_COUNT],
     /// Longest way of the hips over the ground in the captures, metres per frame.
     pub fastest_step: f32,
+    /// Longest way of the hips through the air in the captures, metres per frame.
+    pub fastest_hips: f32,
     /// Largest reach of any footprint.
     pub max_reach: f32,
     /// By pose group, whether people have a box in their hands.
@@ -197,6 +199,12 @@ impl<'a> Library<'a> {
             backward,
             closings,
             fastest,
+            fastest_hips: set
+                .kinds
+                .iter()
+                .flat_map(|k| &k.fragments)
+                .map(|f| fastest_hips(&f.motion))
+                .fold(0.0, f32::max),
             fastest_step: roles.iter().map(|r| longest_step(&r.path)).fold(0.0, f32::max),
             max_reach: roles.iter().flat_map(Role::reaches).fold(0.0, f32::max),
             laden: set.laden_groups(),
@@ -338,6 +346,11 @@ fn askew(path: &MotionPath) -> f32 {
 
 fn longest_step(path: &MotionPath) -> f32 {
     path.points.windows(2).map(|w| w[0].distance(w[1])).fold(0.0, f32::max)
+}
+
+fn fastest_hips(motion: &Motion) -> f32 {
+    let hips = |f: usize| motion.path.points[f].extend(motion.heights[f]);
+    (1..motion.len()).map(|f| hips(f).distance(hips(f - 1))).fold(0.0, f32::max)
 }
 
 fn hips_turns(motion: &Motion) -> Vec<f32> {

@@ -24,6 +24,7 @@ mod occupancy;
 mod outcome;
 mod paper;
 mod piece;
+mod plan;
 mod prefer;
 mod rehearsal;
 mod scene;

@@ -8,7 +8,7 @@ use super::bridge::{Goal, NO_INSTANCE, Taste};
 use super::domain::Spot;
 use super::draft::Draft;
 use super::library::{Library, Move};
-use super::piece::Piece;
+use super::piece::{Company, Piece};
 use super::prefer::Stay;
 use crate::geom::Ground;
 
@@ -21,7 +21,7 @@ pub(super) fn seed_person(draft: &mut Draft, laden: bool, taste: Taste, rng: &mu
     let first = (0..PLACES).find_map(|_| first_piece(draft, laden, rng))?;
     let exit = draft.base.library.exit_of(&first);
     let mut pieces = vec![draft.add(first)];
-    pieces.extend(draft.search(exit, Goal::Until(draft.base.domain.horizon), taste, rng)?);
+    pieces.extend(draft.search(exit, Goal::Until(draft.base.domain.horizon), Company::NONE, taste, rng)?);
     draft.push_track(pieces);
     Some(())
 }

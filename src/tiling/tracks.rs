@@ -40,6 +40,13 @@ pub(super) struct Tracks<'a> {
     company: usize,
 }
 
+/// Instances of a change have numbers from here on, counted downwards, until it is made.
+const PROVISIONAL: u32 = 1 << 31;
+
+fn is_provisional(instance: u32) -> bool {
+    (PROVISIONAL..NO_INSTANCE).contains(&instance)
+}
+
 /// Pieces `from..to` of a track.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Window {
@@ -105,6 +112,17 @@ impl<'a> Tracks<'a> {
         }
     }
 
+    /// The instance of several people that ends where piece `index` of a track begins.
+    pub fn company_before(&self, track: TrackId, index: usize) -> u32 {
+        index.checked_sub(1).map_or(NO_INSTANCE, |before| self.company_after(track, before))
+    }
+
+    /// The instance of several people that piece `index` of a track is of.
+    pub fn company_after(&self, track: TrackId, index: usize) -> u32 {
+        let piece = self.tracks[track].get(index).filter(|&&id| self.people_of(id) > 1);
+        piece.map_or(NO_INSTANCE, |&id| self.piece(id).instance)
+    }
+
     /// The tiling as searches see it.
     pub fn view(&self) -> View<'_> {
         View::new(self.library, self.domain, &self.occupancy)
@@ -154,6 +172,11 @@ impl<'a> Tracks<'a> {
         let mut numbers: Vec<(u32, u32)> = Vec::new();
         for mut piece in pieces {
             piece.instance = self.number(&mut numbers, piece.instance);
+            for instance in [&mut piece.company.from, &mut piece.company.to] {
+                if is_provisional(*instance) {
+                    *instance = self.number(&mut numbers, *instance);
+                }
+            }
             if !self.view().is_free(&piece) {
                 for id in ids.into_iter().rev() {
                     self.occupancy.hide(id);

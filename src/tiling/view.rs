@@ -4,12 +4,11 @@ use std::ops::ControlFlow;
 
 use glam::Vec3;
 
-use super::bridge::NO_INSTANCE;
 use super::domain::{Domain, Spot};
 use super::footprint::Footprint;
 use super::library::Library;
 use super::occupancy::{Occupancy, PieceId, Shown};
-use super::piece::{Body, Piece, Rigid, footprint, lifts, overlap, world_discs};
+use super::piece::{Body, Company, Piece, Rigid, Ties, footprint, lifts, overlap, world_discs};
 use super::sketch::Sketch;
 
 /// What a search looks at.
@@ -30,7 +29,7 @@ pub(super) struct View<'a> {
 struct Player<'a> {
     library: &'a Library<'a>,
     role: u32,
-    instance: u32,
+    ties: Ties,
 }
 
 impl Player<'_> {
@@ -57,15 +56,15 @@ impl<'a> View<'a> {
         if Sketch::is_sketched(id) { self.sketch.piece(id) } else { self.occupancy.piece(id) }
     }
 
-    /// True if the piece stays inside the domain and clear of all bodies seen, but for those of its own instance.
+    /// True if the piece stays inside the domain and clear of all bodies seen, but for those it is with.
     pub fn is_free(self, piece: &Piece) -> bool {
-        let player = Player { library: self.library, role: piece.role, instance: piece.instance };
+        let player = Player { library: self.library, role: piece.role, ties: piece.ties() };
         self.is_clear(player, piece.shown_from, piece.bodies.len(), |i| piece.bodies[i])
     }
 
     /// The same of a role placed rigidly, if it is no part of an instance and leaves no boxes lying.
-    pub fn is_free_rigid(self, role: u32, rigid: Rigid) -> bool {
-        let player = Player { library: self.library, role, instance: NO_INSTANCE };
+    pub fn is_free_rigid(self, role: u32, rigid: Rigid, company: Company) -> bool {
+        let player = Player { library: self.library, role, ties: rigid.ties(company) };
         let ticks = rigid.ticks(self.domain);
         self.is_clear(player, ticks.start, ticks.len(), |i| rigid.body(ticks.start + i as i32))
     }
@@ -82,7 +81,7 @@ impl<'a> View<'a> {
 
     /// The pieces whose bodies are in the way of `piece`, sorted; `None` if a wall or a crush is.
     pub fn blockers(self, piece: &Piece) -> Option<Vec<PieceId>> {
-        let player = Player { library: self.library, role: piece.role, instance: piece.instance };
+        let player = Player { library: self.library, role: piece.role, ties: piece.ties() };
         let bodies = || (piece.shown_from..).zip(&piece.bodies);
         if !bodies().all(|(tick, body)| player.is_inside(self.domain, tick, body)) {
             return None;
@@ -118,7 +117,7 @@ impl<'a> View<'a> {
                 return false;
             }
             let other = self.piece(shown.id);
-            if other.instance == player.instance && player.instance != NO_INSTANCE {
+            if player.ties.join(other.ties(), tick) {
                 return false;
             }
             let theirs = other.body(tick).expect("shown at this tick");
