@@ -79,7 +79,7 @@ fn is_in_wall(body: &Body, domain: &Domain, frame: usize) -> bool {
 /// True if from the frame before a joint turns or the hips move `rush` times faster than in the captures.
 pub(super) fn is_rushed(body: &Body, library: &Library, frame: usize, rush: f32) -> bool {
     let Some(last) = frame.checked_sub(1) else { return false };
-    let longest_step = rush * library.fastest_step + library.limits.stretch;
+    let longest_step = rush * library.fastest_hips + library.limits.stretch;
     let (before, now) = (body.pose(last), body.pose(frame));
     body.root[frame].distance(body.root[last]) > longest_step
         || (0..JOINT_COUNT).any(|j| turn_between(before[j], now[j]) > rush * library.fastest[j])

@@ -15,6 +15,7 @@ use super::draft::Draft;
 use super::library::Library;
 use super::occupancy::PieceId;
 use super::piece::{Company, Rigid};
+use super::prefer::Stay;
 use crate::geom::Ground;
 
 /// Places tried for a first patch.
@@ -94,10 +95,13 @@ fn player(encore: Encore, k: usize, people: usize) -> usize {
 
 /// One role of a placed patch.
 #[derive(Clone, Copy)]
-struct Part {
-    role: u32,
-    entry: Port,
-    exit: Port,
+pub(super) struct Part {
+    /// The role.
+    pub role: u32,
+    /// Where it begins.
+    pub entry: Port,
+    /// Where it ends.
+    pub exit: Port,
 }
 
 /// An encore as it lies if who plays its first role goes there by the closing as it is.
@@ -110,7 +114,8 @@ fn step(library: &Library, ends: &[Port], encore: Encore) -> Vec<Part> {
     parts(library, encore.kind, world_from_patch, tick - lead.begin)
 }
 
-fn parts(library: &Library, kind: u32, world_from_patch: Ground, clock: i32) -> Vec<Part> {
+/// The roles of a kind placed somewhere.
+pub(super) fn parts(library: &Library, kind: u32, world_from_patch: Ground, clock: i32) -> Vec<Part> {
     let part = |role| {
         let (entry, exit) = library.ports(role, world_from_patch, clock);
         Part { role, entry, exit }
@@ -130,12 +135,22 @@ pub(super) struct Wish {
 }
 
 /// Somebody's life so far. Those who are together come in the order of the roles that they played last.
-struct Life {
-    pieces: Vec<PieceId>,
+pub(super) struct Life {
+    /// The patches, in order.
+    pub pieces: Vec<PieceId>,
     begin: Port,
-    end: Port,
+    /// Where it ends so far.
+    pub end: Port,
     /// The first and the last patch of several people.
-    company: Company,
+    pub company: Company,
+}
+
+impl Life {
+    /// One patch.
+    pub fn of(part: &Part, id: PieceId, instance: u32) -> Self {
+        let company = Company { from: instance, to: instance };
+        Self { pieces: vec![id], begin: part.entry, end: part.exit, company }
+    }
 }
 
 /// Adds people who meet as wished, each present over the whole time.
@@ -151,9 +166,7 @@ pub(super) fn gather(
     let mut together = time_together(&first, horizon);
     let ids = draft.add_patch(first.iter().map(|p| (p.role, p.entry)))?;
     let here = draft.piece(ids[0]).instance;
-    let company = Company { from: here, to: here };
-    let life = |(p, id): (&Part, PieceId)| Life { pieces: vec![id], begin: p.entry, end: p.exit, company };
-    let mut lives: Vec<Life> = first.iter().zip(ids).map(life).collect();
+    let mut lives: Vec<Life> = first.iter().zip(ids).map(|(part, id)| Life::of(part, id, here)).collect();
     let mut kind = wish.kind;
     while together < wish.together && lives.iter().all(|l| l.end.tick < horizon - SEEN) {
         let Some((next, parts)) = go_on(draft, &mut lives, &encores.0[kind as usize], taste, rng) else { break };
@@ -188,7 +201,11 @@ fn place(draft: &Draft, wish: Wish, rng: &mut ChaCha8Rng) -> Option<Vec<Part>> {
     let longest = library.roles_of(wish.kind).map(|r| library.roles[r as usize].ticks).max()?;
     let earliest = SEEN - longest;
     let latest = (domain.horizon - SEEN - wish.together).max(earliest + 1);
-    let parts = parts(library, wish.kind, world_from_patch, rng.random_range(earliest..latest));
+    let clock = rng.random_range(earliest..latest);
+    if !library.preference.is_wanted(wish.kind, Stay::new(world_from_patch, clock.max(0)), rng) {
+        return None;
+    }
+    let parts = parts(library, wish.kind, world_from_patch, clock);
     is_free(draft, &parts).then_some(parts)
 }
 
@@ -263,7 +280,7 @@ fn join(
 }
 
 /// Leads somebody from the beginning of time to their first patch.
-fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     if life.begin.tick > 0 {
         let company = Company { to: life.company.from, ..Company::NONE };
         let way = lead(draft, life.begin, Goal::Since(0), company, taste, rng)?;
@@ -273,7 +290,7 @@ fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) 
 }
 
 /// Leads somebody from their last patch to the end of time.
-fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+pub(super) fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let horizon = draft.base.domain.horizon;
     if life.end.tick < horizon {
         let company = Company { from: life.company.to, ..Company::NONE };

@@ -39,7 +39,12 @@ pub(super) fn dissolve(draft: &mut Draft, fault: Fault, taste: Taste, rng: &mut 
     (0..TRIES).find_map(|attempt| {
         let track = if rng.random_range(0..2) == 0 { fault.a } else { fault.b };
         let at = near(tracks, track, fault.tick, DISSOLVE_REACH, |people| people > 1)?;
-        let instance = tracks.piece(tracks.tracks[track][at]).instance;
+        let piece = tracks.piece(tracks.tracks[track][at]);
+        // What a scene has placed stays.
+        if !tracks.library.multi.contains(&tracks.library.roles[piece.role as usize].kind) {
+            return None;
+        }
+        let instance = piece.instance;
         let window = |track| tracks.index_in(track, instance).map(|from| Window { track, from, to: from + 1 });
         let windows = (0..tracks.tracks.len()).filter_map(window).collect();
         rebridge(draft, windows, 0..=attempt, taste, rng)

@@ -47,9 +47,9 @@ pub(super) fn tile(
 ) -> Outcome {
     let mut clock = Clock::new(options.time_secs, progress);
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
-    let library = Library::new(set, scene.limits);
+    let library = Library::new(set, scene.limits).preferring(&scene.preference);
     let mut tiling = Patchwork::new(&library, domain);
-    let preference = prefer::by_size(&library);
+    let preference = prefer::preference(&library);
 
     anneal::anneal(&mut tiling, scene.characters, &preference, &mut clock, &mut rng);
     let mut search = search::Search::new(preference);
