@@ -1,0 +1,177 @@
+//! A baked world of crowd patches: immutable, playable at any time, by random access.
+//!
+//! "Crowd Patches" (2009): a world is patches of a few kinds, placed side by side; all of it repeats every period. State at
+//! time t is a pure function of t: nobody is simulated, nothing is remembered, t = 1 h costs what t = 1 s costs.
+//!
+//! **Layout.** A walker's way is a uniform cubic B-spline over time slots ([`Moment`]), its control points 16-bit numbers.
+//! A *page* is a run of slots; within it, every kind's walkers are *lanes* in an order that makes those present in any
+//! slot neighbours: who leaves during the page first (the earliest first), then who stays, then who comes in. Rows of
+//! control points follow each other, so that one slot of all kinds is four contiguous rows, and sampling is four loads,
+//! a weighted sum and the instance's transform for eight lanes at a time ([`Rows`](rows)). Kinds may be shared by any number of
+//! instances, or be used once.
+//!
+//! | file | what |
+//! |---|---|
+//! | `moment.rs` | an instant: time slot and spline weights |
+//! | `tables.rs` | all numbers of a world, as in the file; what must be true of them |
+//! | `rows.rs` | pages, lanes, the sampling kernel |
+//! | `kind.rs` | what a patch kind consists of: outline, patterns, objects, people, ways |
+//! | `identity.rs` | who is who, at any time |
+//! | `place.rs` | where instances are, which are near |
+//! | `file.rs` | the world file |
+
+mod file;
+mod identity;
+mod kind;
+mod moment;
+mod place;
+mod rows;
+mod tables;
+
+use glam::DVec2;
+
+pub(crate) use identity::mix;
+pub use identity::{Identities, Link, Person};
+pub use kind::{Crossing, Kind, ObjectShape, Pattern, Stayer};
+pub use moment::Moment;
+pub use place::{Nearby, Spot, UNITS_PER_METRE};
+pub use rows::Roots;
+pub(crate) use rows::stay_slots;
+pub use tables::{Lane, Tables, TemplateInfo, WalkLimits, WorldInfo};
+
+use crate::Result;
+
+/// A finished world: see the [module's documentation](self).
+#[derive(Clone, Debug, PartialEq)]
+pub struct World {
+    tables: Tables,
+    rows: rows::Index,
+    nearby: Nearby,
+    /// Index of the first crossing of every instance, and after the last.
+    first_crossing: Vec<u32>,
+    /// Number of stayers before every instance, and of all.
+    first_stayer: Vec<u32>,
+}
+
+impl World {
+    /// A world of these numbers.
+    ///
+    /// # Errors
+    /// Names the table and the place in it where something cannot be.
+    pub fn new(tables: Tables) -> Result<Self> {
+        tables.validate()?;
+        let rows = rows::Index::new(&tables)?;
+        let nearby = Nearby::new(&tables);
+        let ends = |of: &dyn Fn(usize) -> usize| {
+            let each = tables.instance_kinds.iter().map(|&kind| of(kind as usize) as u32);
+            std::iter::once(0)
+                .chain(each.scan(0_u32, |sum, n| {
+                    *sum += n;
+                    Some(*sum)
+                }))
+                .collect::<Vec<u32>>()
+        };
+        let first_crossing = ends(&|kind| tables.kind(kind).walkers());
+        let first_stayer = ends(&|kind| tables.kind(kind).stayers().len());
+        Ok(Self { rows, nearby, first_crossing, first_stayer, tables })
+    }
+
+    /// All its numbers.
+    pub fn tables(&self) -> &Tables {
+        &self.tables
+    }
+
+    /// What it is, in words and settings.
+    pub fn info(&self) -> &WorldInfo {
+        &self.tables.info
+    }
+
+    /// The instant `time` (seconds, any; also negative).
+    pub fn moment(&self, time: f64) -> Moment {
+        Moment::new(time, f64::from(self.info().period_secs), self.info().slots)
+    }
+
+    /// How many patch kinds there are.
+    pub fn kinds(&self) -> usize {
+        self.tables.kinds()
+    }
+
+    /// A patch kind.
+    pub fn kind(&self, kind: usize) -> Kind<'_> {
+        self.tables.kind(kind)
+    }
+
+    /// How many patches there are.
+    pub fn instances(&self) -> usize {
+        self.tables.instance_kinds.len()
+    }
+
+    /// Kind of a patch.
+    pub fn kind_of(&self, instance: usize) -> usize {
+        self.tables.instance_kinds[instance] as usize
+    }
+
+    /// Where the origin of a patch is, metres.
+    pub fn place(&self, instance: usize) -> DVec2 {
+        self.tables.place(instance)
+    }
+
+    /// How a patch is turned about the vertical, radians: its x axis points along (cos, sin) of it in (x, z).
+    pub fn turn(&self, instance: usize) -> f32 {
+        self.tables.instance_turns[instance]
+    }
+
+    /// Which patches are where.
+    pub fn nearby(&self) -> &Nearby {
+        &self.nearby
+    }
+
+    /// How many people walk at an instant. O(1).
+    pub fn walkers(&self, moment: &Moment) -> usize {
+        self.rows.people[moment.slot as usize] as usize
+    }
+
+    /// How many people stay inside their patches.
+    pub fn stayers(&self) -> usize {
+        self.first_stayer[self.instances()] as usize
+    }
+
+    /// Where everybody who walks is at `moment`, patch by patch, metres from `origin`. O(people); allocates only where `out` has
+    /// never been as large.
+    pub fn roots(&self, moment: &Moment, origin: DVec2, out: &mut Roots) {
+        let all = 0..self.instances() as u32;
+        rows::sample(self, moment, all.map(|instance| Spot { instance, shift: DVec2::ZERO }), origin, out);
+    }
+
+    /// The same for some patches only.
+    pub fn roots_of(&self, moment: &Moment, spots: impl Iterator<Item = Spot>, origin: DVec2, out: &mut Roots) {
+        rows::sample(self, moment, spots, origin, out);
+    }
+
+    /// Who walks in `instance` at `moment`, in the order of [`Self::roots`]: index of the walker in the kind, and the period it came
+    /// in.
+    pub fn walkers_of(&self, instance: usize, moment: &Moment) -> impl ExactSizeIterator<Item = (usize, i64)> {
+        let own = moment.later(self.tables.instance_phases[instance], self.info().slots);
+        self.rows
+            .lanes(&self.tables, self.kind_of(instance), own.slot)
+            .map(move |lane| (lane.walker(), own.lap - lane.lap()))
+    }
+
+    /// Who walks in `instance` (of the world's copy `copy`) at `moment`, in the order of [`Self::roots`]. O(1) for each.
+    pub fn people_of(&self, instance: usize, copy: [i64; 2], moment: &Moment) -> impl ExactSizeIterator<Item = Person> {
+        let first = self.first_crossing[instance] as usize;
+        let identities = &self.tables.identities;
+        self.walkers_of(instance, moment).map(move |(walker, lap)| identities.of(first + walker, copy, lap))
+    }
+
+    /// The `index`-th of those who stay in `instance` (of the world's copy `copy`).
+    pub fn stayer(&self, instance: usize, index: usize, copy: [i64; 2]) -> Person {
+        let number = i64::from(self.first_stayer[instance]) + index as i64;
+        Person { cycle: self.tables.identities.cycles() as u32, copy, number }
+    }
+
+    /// Bytes it takes in memory.
+    pub fn bytes(&self) -> usize {
+        self.tables.bytes() + self.rows.bytes() + self.nearby.bytes() + 4 * (2 * self.instances() + 2)
+    }
+}
