@@ -39,6 +39,7 @@ pub fn bake(
         bakery.add_kind(index, patch, *template)?;
     }
     bakery.add_pages(kinds);
+    bakery.end_rows();
     bakery.add_instances(placements)?;
     World::new(bakery.tables)
 }
@@ -215,6 +216,11 @@ impl Bakery {
                 }
             }
         }
+    }
+
+    /// Ends the rows with as many zeros as are read at a time.
+    fn end_rows(&mut self) {
+        self.tables.rows.extend([0; 8]);
     }
 
     /// Control point number `knot` of the common clock; where a way has none, its nearest.

@@ -13,7 +13,7 @@ use super::{Moment, Tables, World};
 use crate::Result;
 
 /// Lanes sampled together.
-const WIDTH: usize = 8;
+pub(super) const WIDTH: usize = 8;
 
 /// Places and velocities, one array for each coordinate. Reused from frame to frame.
 #[derive(Clone, Debug, Default)]
@@ -53,7 +53,9 @@ impl Roots {
         &self.arrays[3][..self.len]
     }
 
-    fn reserve(&mut self, people: usize) {
+    #[cold]
+    #[inline(never)]
+    fn grow(&mut self, people: usize) {
         if self.arrays[0].len() < people {
             self.arrays.iter_mut().for_each(|array| array.resize(people, 0.0));
         }
@@ -63,7 +65,7 @@ impl Roots {
 /// Where the lanes present in a slot of a kind are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Run {
-    /// Their first x in a row.
+    /// Their first x in the slot's first row: an index into `Tables::rows`.
     at: u32,
     /// Lanes of the kind in the page: how far behind x its z is.
     lanes: u16,
@@ -75,8 +77,11 @@ struct Run {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Index {
     runs: Vec<Run>,
-    /// First number of every page, and of its rows.
+    /// From row to row, of every slot.
+    strides: Vec<usize>,
     pages: Vec<Page>,
+    /// Sine and cosine of every patch's turn, times the metres of a unit.
+    turns: Vec<[f32; 2]>,
     /// People who walk, of every slot.
     pub people: Vec<u32>,
 }
@@ -96,7 +101,11 @@ impl Index {
     /// If lanes name walkers that do not exist, or those present in a slot are not neighbours.
     pub fn new(tables: &Tables) -> Result<Self> {
         let (kinds, slots) = (tables.kinds(), tables.info.slots as usize);
-        let mut index = Self { runs: vec![Run::default(); slots * kinds], pages: Vec::new(), people: Vec::new() };
+        expect(u32::try_from(tables.rows.len()).is_ok(), "rows", || "more than 4 billion numbers".into())?;
+        let runs = vec![Run::default(); slots * kinds];
+        let turn = |t: &f32| [t.sin(), t.cos()].map(|part| part * tables.info.metres_per_unit);
+        let turns = tables.instance_turns.iter().map(turn).collect();
+        let mut index = Self { runs, turns, strides: Vec::new(), pages: Vec::new(), people: Vec::new() };
         let stays: Vec<(i64, i64)> = (0..kinds).flat_map(|kind| stays(tables, kind)).collect();
         let mut begin = 0;
         for page in 0..tables.pages() {
@@ -104,6 +113,7 @@ impl Index {
             let (first, last) = (end(page * kinds), end((page + 1) * kinds));
             let row = 2 * (last - first);
             index.pages.push(Page { begin, row, lane: first });
+            index.strides.extend(std::iter::repeat_n(row, tables.page_slots(page)));
             begin += row * (tables.page_slots(page) + 3);
             let mut walkers = 0;
             for kind in 0..kinds {
@@ -140,7 +150,7 @@ impl Index {
     ) -> Result<()> {
         let place = || format!("page {page}, kind {kind}");
         let slots = i64::from(tables.info.slots);
-        let base = self.pages[page].lane;
+        let Page { begin, row, lane: base } = self.pages[page];
         for step in 0..tables.page_slots(page) {
             let slot = page * tables.info.page as usize + step;
             let mut present = Vec::new();
@@ -159,7 +169,7 @@ impl Index {
                 format!("lanes {present:?} for {due} people in slot {slot}")
             })?;
             self.runs[slot * tables.kinds() + kind] = Run {
-                at: (2 * (lanes.start - base) + low) as u32,
+                at: (begin + step * row + 2 * (lanes.start - base) + low) as u32,
                 lanes: lanes.len() as u16,
                 live: present.len() as u16,
             };
@@ -175,14 +185,16 @@ impl Index {
         slot: u32,
     ) -> impl ExactSizeIterator<Item = Lane> + use<'a> {
         let run = self.runs[slot as usize * tables.kinds() + kind];
-        let page = slot as usize / tables.info.page as usize;
+        let page_slots = tables.info.page as usize;
+        let (page, step) = (slot as usize / page_slots, slot as usize % page_slots);
         let first = if page + kind == 0 { 0 } else { tables.lane_ends[page * tables.kinds() + kind - 1] as usize };
-        let low = run.at as usize - 2 * (first - self.pages[page].lane);
+        let Page { begin, row, lane } = self.pages[page];
+        let low = run.at as usize - begin - step * row - 2 * (first - lane);
         tables.lanes[first + low..first + low + usize::from(run.live)].iter().map(|&lane| Lane(lane))
     }
 
     pub fn bytes(&self) -> usize {
-        8 * self.runs.len() + 24 * self.pages.len() + 4 * self.people.len()
+        8 * (self.runs.len() + self.strides.len() + self.turns.len()) + 24 * self.pages.len() + 4 * self.people.len()
     }
 }
 
@@ -212,7 +224,7 @@ pub(super) fn sample(
     origin: DVec2,
     out: &mut Roots,
 ) {
-    out.reserve(world.walkers(moment) + WIDTH);
+    out.grow(world.walkers(moment) + WIDTH);
     out.len = 0;
     pulp::Arch::new().dispatch(Sampling { world, moment, spots, origin, out });
 }
@@ -232,9 +244,12 @@ impl<I: Iterator<Item = Spot>> pulp::NullaryFnOnce for Sampling<'_, I> {
     fn call(self) {
         let Self { world, moment, spots, origin, out } = self;
         let slots = world.info().slots;
+        // Copies, so that nothing written can be taken for them.
+        let (place, velocity) = (moment.place, moment.velocity);
         for spot in spots {
-            let own = moment.later(world.tables.instance_phases[spot.instance as usize], slots);
-            sample_patch(world, &own, spot, origin, out);
+            let slot = moment.slot + world.tables.instance_phases[spot.instance as usize];
+            let slot = if slot < slots { slot } else { slot - slots };
+            sample_patch(world, slot as usize, [&place, &velocity], spot, origin, out);
         }
     }
 }
@@ -242,60 +257,58 @@ impl<I: Iterator<Item = Spot>> pulp::NullaryFnOnce for Sampling<'_, I> {
 type Eight = [f32; WIDTH];
 
 #[inline(always)]
-fn sample_patch(world: &World, moment: &Moment, spot: Spot, origin: DVec2, out: &mut Roots) {
+fn sample_patch(world: &World, slot: usize, weights: [&[f32; 4]; 2], spot: Spot, origin: DVec2, out: &mut Roots) {
     let (tables, instance) = (&world.tables, spot.instance as usize);
-    let slot = moment.slot as usize;
     let run = world.rows.runs[slot * tables.kinds() + tables.instance_kinds[instance] as usize];
-    let live = usize::from(run.live);
-    if out.arrays[0].len() < out.len + live + WIDTH {
+    let (live, first) = (usize::from(run.live), out.len);
+    let read = live.next_multiple_of(WIDTH);
+    if out.arrays[0].len() < first + read {
         // The same patch more than once, where a world repeats.
-        out.reserve((out.len + live + WIDTH) * 2);
-    }
-    let page = world.rows.pages[slot / tables.info.page as usize];
-    let first = page.begin + (slot % tables.info.page as usize) * page.row + run.at as usize;
-    let unit = tables.info.metres_per_unit;
-    let turn = tables.instance_turns[instance];
-    let (sin, cos) = if turn == 0.0 { (0.0, 1.0) } else { turn.sin_cos() };
-    let (sin, cos) = (sin * unit, cos * unit);
-    let place = (tables.place(instance) + spot.shift - origin).as_vec2();
-    let rows: [usize; 4] = std::array::from_fn(|r| first + r * page.row);
-    for k in (0..live).step_by(WIDTH) {
-        let x = rows.map(|at| load(&tables.rows, at + k));
-        let z = rows.map(|at| load(&tables.rows, at + k + usize::from(run.lanes)));
-        let (px, pz) = (weigh(&x, &moment.place), weigh(&z, &moment.place));
-        let (vx, vz) = (weigh(&x, &moment.velocity), weigh(&z, &moment.velocity));
-        let at = out.len + k;
-        let [ox, oz, ovx, ovz] = &mut out.arrays;
-        store(ox, at, std::array::from_fn(|i| cos * px[i] - sin * pz[i] + place.x));
-        store(oz, at, std::array::from_fn(|i| sin * px[i] + cos * pz[i] + place.y));
-        store(ovx, at, std::array::from_fn(|i| cos * vx[i] - sin * vz[i]));
-        store(ovz, at, std::array::from_fn(|i| sin * vx[i] + cos * vz[i]));
+        out.grow((first + read) * 2);
     }
     out.len += live;
+    let [sin, cos] = world.rows.turns[instance];
+    let place = (tables.place(instance) + spot.shift - origin).as_vec2();
+    let (n, at) = (world.rows.strides[slot], run.at as usize);
+    let eights = |at: usize| tables.rows[at..at + read].as_chunks::<WIDTH>().0;
+    let x: [_; 4] = [eights(at), eights(at + n), eights(at + 2 * n), eights(at + 3 * n)];
+    let at = at + usize::from(run.lanes);
+    let z: [_; 4] = [eights(at), eights(at + n), eights(at + 2 * n), eights(at + 3 * n)];
+    let [ox, oz, ovx, ovz] = &mut out.arrays;
+    let out = [ox, oz, ovx, ovz].map(|array| array[first..first + read].as_chunks_mut::<WIDTH>().0);
+    transform(x, z, weights, (sin, cos, place.x, place.y), out);
 }
 
-/// Eight numbers; at the very end of the table fewer, and zeros.
+/// Weighs the control points of blocks of eight lanes, turns and moves them: places, then velocities.
 #[inline(always)]
-fn load(rows: &[i16], at: usize) -> Eight {
-    match rows.get(at..).and_then(|rest| rest.first_chunk::<WIDTH>()) {
-        Some(numbers) => numbers.map(f32::from),
-        None => last(rows, at),
+fn transform(
+    x: [&[[i16; WIDTH]]; 4],
+    z: [&[[i16; WIDTH]]; 4],
+    [place, velocity]: [&[f32; 4]; 2],
+    (sin, cos, right, up): (f32, f32, f32, f32),
+    [ox, oz, ovx, ovz]: [&mut [Eight]; 4],
+) {
+    let n = ox.len();
+    let ([x0, x1, x2, x3], [z0, z1, z2, z3]) = (x.map(|s| &s[..n]), z.map(|s| &s[..n]));
+    let (oz, ovx, ovz) = (&mut oz[..n], &mut ovx[..n], &mut ovz[..n]);
+    for b in 0..n {
+        let x = [lift(x0[b]), lift(x1[b]), lift(x2[b]), lift(x3[b])];
+        let z = [lift(z0[b]), lift(z1[b]), lift(z2[b]), lift(z3[b])];
+        let (px, pz) = (weigh(&x, place), weigh(&z, place));
+        let (vx, vz) = (weigh(&x, velocity), weigh(&z, velocity));
+        ox[b] = std::array::from_fn(|i| cos * px[i] - sin * pz[i] + right);
+        oz[b] = std::array::from_fn(|i| sin * px[i] + cos * pz[i] + up);
+        ovx[b] = std::array::from_fn(|i| cos * vx[i] - sin * vz[i]);
+        ovz[b] = std::array::from_fn(|i| sin * vx[i] + cos * vz[i]);
     }
 }
 
-#[cold]
-fn last(rows: &[i16], at: usize) -> Eight {
-    std::array::from_fn(|i| rows.get(at + i).map_or(0.0, |&n| f32::from(n)))
+#[inline(always)]
+fn lift(numbers: [i16; WIDTH]) -> Eight {
+    numbers.map(f32::from)
 }
 
 #[inline(always)]
 fn weigh(rows: &[Eight; 4], w: &[f32; 4]) -> Eight {
     std::array::from_fn(|i| rows[0][i] * w[0] + rows[1][i] * w[1] + rows[2][i] * w[2] + rows[3][i] * w[3])
-}
-
-#[inline(always)]
-fn store(out: &mut [f32], at: usize, numbers: Eight) {
-    if let Some(place) = out.get_mut(at..).and_then(|rest| rest.first_chunk_mut()) {
-        *place = numbers;
-    }
 }

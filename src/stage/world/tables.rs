@@ -109,7 +109,8 @@ pub struct Tables {
     pub lane_ends: Vec<u32>,
     /// Who each lane is.
     pub lanes: Vec<u32>,
-    /// Control points, page by page, row by row, kind by kind: x of all lanes, z of all lanes.
+    /// Control points, page by page, row by row, kind by kind: x of all lanes, z of all lanes. Eight zeros follow, so that eight
+    /// can be read from anywhere.
     pub rows: Vec<i16>,
     /// Kind of every patch.
     pub instance_kinds: Vec<u32>,
@@ -263,6 +264,7 @@ impl Tables {
             if self.kinds() == 0 { 0 } else { end(page + 1) - end(page) }
         };
         let rows: usize = (0..self.pages()).map(|p| 2 * lanes(p) * (self.page_slots(p) + 3)).sum();
+        let rows = rows + super::rows::WIDTH;
         let found = self.rows.len();
         expect(found == rows, "rows", || format!("{found} numbers instead of {rows}"))
     }
