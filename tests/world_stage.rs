@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
+use crowdquilt::check::world::check_world;
 use crowdquilt::stage::World;
-use crowdquilt::stage::world::{Person, Roots};
+use crowdquilt::stage::world::{Person, Roots, Tables};
 use crowdquilt::world::{Lattice, Plan, scenes};
 use glam::DVec2;
 
@@ -90,6 +91,57 @@ fn who_is_near_is_found_in_any_copy() {
     let found = (0..near.len()).filter(|&i| inside(near.x()[i].into(), near.z()[i].into())).count();
     assert!(expected > 50);
     assert_eq!(found, expected);
+}
+
+#[test]
+fn the_check_of_a_baked_world_holds() {
+    for endless in [true, false] {
+        let (_, world) = baked(&Plan { versions: 2, ..scenes::city(16, endless, 1).unwrap() });
+        let report = check_world(&world);
+        assert!(report.ok(), "{report}");
+        assert_eq!(report.rows.len(), 9);
+    }
+}
+
+#[test]
+fn the_check_of_a_baked_world_finds_what_was_changed() {
+    let (_, world) = baked(&small_city());
+    let failing = |change: &dyn Fn(&mut Tables)| {
+        let mut tables = world.tables().clone();
+        change(&mut tables);
+        let report = check_world(&World::new(tables).unwrap());
+        report.failures().map(|row| row.row.clone()).collect::<Vec<_>>().join(", ")
+    };
+    let cases = [
+        (
+            failing(&|t| t.rows.iter_mut().skip(5_000).step_by(3_001).for_each(|v| *v = v.saturating_add(4_000))),
+            "acceleration",
+        ),
+        (failing(&|t| t.instance_places[21] += 700), "place where a patch hands over"),
+        (failing(&|t| t.instance_places.swap(40, 46)), "people lost between patches"),
+        (failing(&|t| t.stayers.iter_mut().skip(3).step_by(4).for_each(|r| *r += 1.2)), "walkers enter objects"),
+        (failing(&|t| t.info.limits.radius = 0.4), "walkers enter each other"),
+        (failing(&|t| t.info.limits.speed = 1.5), "speed"),
+        (failing(&|t| t.instance_phases[17] = 25), "people lost between patches"),
+    ];
+    for (found, expected) in cases {
+        assert!(found.contains(expected), "expected {expected:?} in {found:?}");
+    }
+}
+
+#[test]
+fn the_way_of_a_walker_is_the_one_played() {
+    let (lattice, world) = baked(&small_city());
+    for (kind, patch) in lattice.kinds().iter().enumerate().take(20) {
+        for (index, walker) in patch.walkers.iter().enumerate() {
+            let (enter, leave) = patch.presence(walker);
+            let middle = 0.5 * (enter + leave);
+            let (place, velocity) = world.way(kind, index, middle).unwrap();
+            assert!(place.distance(walker.path.position(middle) - 4.0) < 3e-4);
+            assert!(velocity.distance(walker.path.velocity(middle)) < 3e-3);
+            assert_eq!((world.way(kind, index, enter - 0.2), world.way(kind, index, leave + 0.2)), (None, None));
+        }
+    }
 }
 
 #[test]

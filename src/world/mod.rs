@@ -26,6 +26,7 @@
 //! | `lattice.rs` | who is who over all borders and periods (see [`Identities`]); endless worlds |
 //! | `bake.rs` | what is solved, as an immutable [`World`](crate::stage::World) |
 //! | `template.rs`, `plan.rs`, `furnish.rs` | what patches contain, which is where, the world that follows |
+//! | `scene.rs` | scene files: templates, and a map in characters or a picture |
 //! | `stream.rs` | an endless world around a camera |
 //! | `scenes.rs`, `measure.rs` | the street and the city of the paper; how long patches take |
 
@@ -44,6 +45,7 @@ mod path;
 mod pattern;
 mod plan;
 mod route;
+mod scene;
 pub mod scenes;
 mod shape;
 mod solve;
@@ -63,6 +65,7 @@ pub use patch::{CrowdPatch, Port, Walker};
 pub use path::Path;
 pub use pattern::{Crossing, Pattern, balanced};
 pub use plan::Plan;
+pub use scene::WorldScene;
 pub use shape::Shape;
 pub use solve::{Common, Method, Options, Solution, solve, vary};
 pub use stream::Stream;

@@ -125,6 +125,11 @@ impl Identities {
         (&self.crossings, &self.cycles)
     }
 
+    /// Whether a cycle is a way through the world rather than a round in it.
+    pub fn leads_out(&self, cycle: u32) -> bool {
+        self.cycles[cycle as usize].people == 0
+    }
+
     /// How many cycles (and ways through the world) there are.
     pub fn cycles(&self) -> usize {
         self.cycles.len()

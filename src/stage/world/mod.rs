@@ -28,7 +28,7 @@ mod place;
 mod rows;
 mod tables;
 
-use glam::DVec2;
+use glam::{DVec2, Vec2};
 
 pub(crate) use identity::mix;
 pub use identity::{Identities, Link, Person};
@@ -146,6 +146,21 @@ impl World {
     /// The same for some patches only.
     pub fn roots_of(&self, moment: &Moment, spots: impl Iterator<Item = Spot>, origin: DVec2, out: &mut Roots) {
         rows::sample(self, moment, spots, origin, out);
+    }
+
+    /// First slot of the stay of every walker of a kind, counted from the period it comes in, and the slot after the last: the patch
+    /// has it from one to the other.
+    pub fn stays(&self, kind: usize) -> Vec<(i64, i64)> {
+        rows::stays(&self.tables, kind)
+    }
+
+    /// Place and velocity of a walker of a kind, in the kind's frame, `secs` after the begin of the period it came in; `None` while
+    /// the patch does not have it. O(lanes of the kind).
+    pub fn way(&self, kind: usize, walker: usize, secs: f64) -> Option<(Vec2, Vec2)> {
+        let moment = self.moment(secs);
+        let mut lanes = self.rows.lanes(&self.tables, kind, moment.slot);
+        let lane = lanes.position(|lane| lane.walker() == walker && lane.lap() == moment.lap)?;
+        Some(self.rows.lane(&self.tables, kind, lane, &moment))
     }
 
     /// Who walks in `instance` at `moment`, in the order of [`Self::roots`]: index of the walker in the kind, and the period it came

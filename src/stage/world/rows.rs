@@ -5,7 +5,7 @@
 //! is overwritten by the next. Without `unsafe`: slices of fixed length carry the compiler to vector instructions, `pulp` to
 //! the widest the machine has. (Products and sums are never fused, so that all machines give the same bits.)
 
-use glam::DVec2;
+use glam::{DVec2, Vec2};
 
 use super::place::Spot;
 use super::tables::{Lane, expect};
@@ -193,6 +193,19 @@ impl Index {
         tables.lanes[first + low..first + low + usize::from(run.live)].iter().map(|&lane| Lane(lane))
     }
 
+    /// Place and velocity of the `lane`-th of those present in a slot of a kind.
+    pub fn lane(&self, tables: &Tables, kind: usize, lane: usize, moment: &Moment) -> (Vec2, Vec2) {
+        let slot = moment.slot as usize;
+        let run = self.runs[slot * tables.kinds() + kind];
+        let at = run.at as usize + lane;
+        let weighed = |weights: &[f32; 4], at: usize| -> f32 {
+            let rows = weights.iter().enumerate().map(|(r, w)| w * f32::from(tables.rows[at + r * self.strides[slot]]));
+            rows.sum::<f32>() * tables.info.metres_per_unit
+        };
+        let both = |weights| Vec2::new(weighed(weights, at), weighed(weights, at + usize::from(run.lanes)));
+        (both(&moment.place), both(&moment.velocity))
+    }
+
     pub fn bytes(&self) -> usize {
         8 * (self.runs.len() + self.strides.len() + self.turns.len()) + 24 * self.pages.len() + 4 * self.people.len()
     }
@@ -200,7 +213,7 @@ impl Index {
 
 /// First slot of every walker's stay, and the slot after the last. The neighbour rounds the same time, so that at every
 /// instant exactly one patch has the walker; both curves are the same straight line then.
-fn stays(tables: &Tables, kind: usize) -> Vec<(i64, i64)> {
+pub(super) fn stays(tables: &Tables, kind: usize) -> Vec<(i64, i64)> {
     let per_sec = f64::from(tables.info.slots) / f64::from(tables.info.period_secs);
     let presences = tables.kind(kind).presences(tables.info.period_secs);
     presences.into_iter().map(|stay| stay_slots(stay, per_sec)).collect()
