@@ -80,7 +80,7 @@ fn maps_in_pictures_name_file_and_pixel() {
     let city = std::fs::read_to_string(examples().join("city.toml")).unwrap();
     let problem = |text: String| WorldScene::from_toml(&text, examples()).unwrap_err().to_string();
     let found = problem(city.replace("#c9b28f", "#c9b28e"));
-    assert!(found.contains("line 8") && found.contains("city.png: pixel 5 of row 4"), "{found}");
+    assert!(found.contains("line 8") && found.contains("city.png: pixel 5 of row 5"), "{found}");
     let found = problem(city.replace("#c9b28f", "brown"));
     assert!(found.contains("expected a colour as #rrggbb, found \"brown\""), "{found}");
     let found = problem(city.replace("city.png", "town.png"));

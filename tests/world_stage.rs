@@ -18,6 +18,9 @@ fn small_city() -> Plan {
     Plan { versions: 2, ..scenes::city(16, true, 1).unwrap() }
 }
 
+/// A patch of the small city in the middle of a street.
+const STREET: usize = 7 * 16 + 3;
+
 /// Everybody at a time, with place and velocity.
 fn everybody(world: &World, time: f64) -> HashMap<Person, (DVec2, DVec2)> {
     let moment = world.moment(time);
@@ -117,12 +120,12 @@ fn the_check_of_a_baked_world_finds_what_was_changed() {
             failing(&|t| t.rows.iter_mut().skip(5_000).step_by(3_001).for_each(|v| *v = v.saturating_add(4_000))),
             "acceleration",
         ),
-        (failing(&|t| t.instance_places[21] += 700), "place where a patch hands over"),
-        (failing(&|t| t.instance_places.swap(40, 46)), "people lost between patches"),
+        (failing(&|t| t.instance_places[2 * STREET + 1] += 700), "place where a patch hands over"),
+        (failing(&|t| t.instance_places.swap(2 * STREET, 2 * STREET + 6)), "people lost between patches"),
         (failing(&|t| t.stayers.iter_mut().skip(3).step_by(4).for_each(|r| *r += 1.2)), "walkers enter objects"),
         (failing(&|t| t.info.limits.radius = 0.4), "walkers enter each other"),
         (failing(&|t| t.info.limits.speed = 1.5), "speed"),
-        (failing(&|t| t.instance_phases[17] = 25), "people lost between patches"),
+        (failing(&|t| t.instance_phases[STREET] = 25), "people lost between patches"),
     ];
     for (found, expected) in cases {
         assert!(found.contains(expected), "expected {expected:?} in {found:?}");

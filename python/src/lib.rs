@@ -19,6 +19,7 @@ mod samples;
 mod signals;
 mod stage;
 mod tiling;
+mod world;
 
 #[pymodule]
 mod _core {
@@ -48,6 +49,10 @@ mod _core {
     use super::stage::{Crowd, Fragment, Prop};
     #[pymodule_export]
     use super::tiling::{Outcome, Progress, Scene, tile};
+    #[pymodule_export]
+    use super::world::{
+        Pattern, World, WorldScene, build_world, check_world, measure_patches, measure_replay, measure_street,
+    };
 
     #[pymodule_export]
     #[allow(non_upper_case_globals)]

@@ -314,7 +314,8 @@ fn lanes(stays: &[Stay], begin: i64, slots: i64, period: i64) -> Vec<Lane> {
 
 fn key(pattern: &Pattern) -> Vec<u8> {
     let numbers = |crossings: &[super::Crossing]| -> Vec<f32> {
-        crossings.iter().flat_map(|c| [c.place, c.time, c.across, c.along]).collect()
+        // The mirror image of a mirror image is off by a rounding.
+        crossings.iter().flat_map(|c| [c.place, c.time, c.across, c.along].map(|v| (v * 1e4).round())).collect()
     };
     let (inputs, outputs) = (numbers(&pattern.inputs), numbers(&pattern.outputs));
     let all = [pattern.length, inputs.len() as f32].into_iter().chain(inputs).chain(outputs);
