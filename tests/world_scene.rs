@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crowdquilt::world::{Plan, WorldScene, scenes};
+use crowdquilt::world::{Layout, Plan, WorldScene, scenes};
 
 fn examples() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/worlds"))
@@ -11,15 +11,16 @@ fn examples() -> &'static Path {
 #[test]
 fn the_example_scenes_are_the_papers_worlds() {
     let street = WorldScene::load(&examples().join("street.toml")).unwrap();
-    assert_eq!((street.name.as_str(), &street.plan), ("street", &scenes::street(3).unwrap()));
+    assert_eq!((street.name.as_str(), street.layout), ("street", Layout::Map(scenes::street(3).unwrap())));
     let city = WorldScene::load(&examples().join("city.toml")).unwrap();
+    let Layout::Map(city) = city.layout else { panic!("a map") };
     // The same world; the scene's borders are said once, from one side.
     let ours = scenes::city(32, false, 1).unwrap();
     let named = |plan: &Plan| -> Vec<Vec<String>> {
         plan.cells.iter().map(|row| row.iter().map(|&t| plan.templates[t].name.clone()).collect()).collect()
     };
-    assert_eq!(named(&city.plan), named(&ours));
-    assert_eq!(city.plan.templates, ours.templates);
+    assert_eq!(named(&city), named(&ours));
+    assert_eq!(city.templates, ours.templates);
 }
 
 const VALID: &str = r#"

@@ -39,9 +39,11 @@ impl WorldScene {
     /// The same scene with another seed.
     #[pyo3(signature = (*, seed=None))]
     fn replace(&self, seed: Option<u64>) -> Self {
-        let mut scene = self.0.clone();
-        scene.plan.seed = seed.unwrap_or(scene.plan.seed);
-        Self(scene)
+        let scene = self.0.clone();
+        Self(match seed {
+            Some(seed) => scene.with_seed(seed),
+            None => scene,
+        })
     }
 
     /// What it is called.
@@ -53,12 +55,18 @@ impl WorldScene {
     /// Same seed, same world.
     #[getter]
     fn seed(&self) -> u64 {
-        self.0.plan.seed
+        match &self.0.layout {
+            core::Layout::Map(plan) => plan.seed,
+            core::Layout::Area(area) => area.seed,
+        }
     }
 
     fn __repr__(&self) -> String {
-        let (columns, rows) = self.0.plan.size();
-        format!("WorldScene({:?}, cells={columns} x {rows})", self.0.name)
+        let what = match &self.0.layout {
+            core::Layout::Map(plan) => format!("cells={} x {}", plan.size().0, plan.size().1),
+            core::Layout::Area(area) => format!("polygons={}", area.grounds.len()),
+        };
+        format!("WorldScene({:?}, {what})", self.0.name)
     }
 }
 
@@ -312,19 +320,17 @@ impl World {
 }
 
 /// Build the world of `scene`. The same scene gives the same world for any number of threads. `progress((done, all))` is told
-/// how many patches are solved and stops the work by returning False.
+/// how many patches are solved and stops the work by returning False. Returns the world, and what had to be repaired or left out
+/// on the way, in words.
 #[pyfunction]
 #[pyo3(signature = (scene, *, progress=None))]
-pub fn build_world(py: Python<'_>, scene: &WorldScene, progress: Option<Py<PyAny>>) -> PyResult<World> {
+pub fn build_world(py: Python<'_>, scene: &WorldScene, progress: Option<Py<PyAny>>) -> PyResult<(World, Vec<String>)> {
     let show = |py: Python<'_>, step: (usize, usize)| Ok(step.into_pyobject(py)?.into_any().unbind());
-    let work = |report: &(dyn Fn((usize, usize)) -> bool + Sync)| {
-        let lattice = scene.0.plan.build_watched(&|done, all| report((done, all)))?;
-        scene.0.plan.bake(&scene.0.name, &lattice)
-    };
+    let work = |report: &(dyn Fn((usize, usize)) -> bool + Sync)| scene.0.build(&|done, all| report((done, all)));
     let (found, interrupt) = watched(py, progress, show, work);
     match interrupt {
         Some(error) => Err(error),
-        None => found.map(|world| World(Arc::new(world))),
+        None => found.map(|built| (World(Arc::new(built.world)), built.notes)),
     }
 }
 

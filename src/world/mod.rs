@@ -26,10 +26,12 @@
 //! | `lattice.rs` | who is who over all borders and periods (see [`Identities`]); endless worlds |
 //! | `bake.rs` | what is solved, as an immutable [`World`](crate::stage::World) |
 //! | `template.rs`, `plan.rs`, `furnish.rs` | what patches contain, which is where, the world that follows |
+//! | `area/` | worlds from walkable polygons: repaired, cut into convex cells |
 //! | `scene.rs` | scene files: templates, and a map in characters or a picture |
 //! | `stream.rs` | an endless world around a camera |
 //! | `scenes.rs`, `measure.rs` | the street and the city of the paper; how long patches take |
 
+mod area;
 mod assign;
 mod bake;
 mod band;
@@ -55,6 +57,7 @@ mod template;
 mod valid;
 
 pub use crate::stage::world::{Identities, Link, Person};
+pub use area::{Area, Built, Coordinates, Ground};
 pub use bake::{Placement, bake};
 pub use frame::{Border, FramePatch, Standing, StaticObject};
 pub use kinds::{Flow, PatternType, balance};
@@ -65,7 +68,7 @@ pub use patch::{CrowdPatch, Port, Walker};
 pub use path::Path;
 pub use pattern::{Crossing, Pattern, balanced};
 pub use plan::Plan;
-pub use scene::WorldScene;
+pub use scene::{Layout, WorldScene};
 pub use shape::Shape;
 pub use solve::{Common, Method, Options, Solution, solve, vary};
 pub use stream::Stream;

@@ -13,17 +13,26 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::{Amount, Furnishing, Gathering, Plan, Prototype, Template};
+use super::{Amount, Area, Built, Coordinates, Furnishing, Gathering, Plan, Prototype, Template};
 use crate::{Error, Result};
 use border::BorderText;
 
-/// A world to build: a plan with a name.
+/// A world to build.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldScene {
     /// What it is called.
     pub name: String,
     /// What is where.
-    pub plan: Plan,
+    pub layout: Layout,
+}
+
+/// What is where.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Layout {
+    /// Templates on a grid.
+    Map(Plan),
+    /// Walkable polygons.
+    Area(Area),
 }
 
 #[derive(serde::Deserialize)]
@@ -43,8 +52,16 @@ struct SceneText {
     patterns: Spanned<i64>,
     #[serde(default)]
     versions: u32,
-    map: Spanned<String>,
+    map: Option<Spanned<String>>,
+    area: Option<Spanned<AreaText>>,
     templates: Vec<Spanned<TemplateText>>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AreaText {
+    file: String,
+    coordinates: String,
 }
 
 #[derive(serde::Deserialize)]
@@ -156,20 +173,46 @@ impl WorldScene {
             );
         }
         let templates: Vec<Template> = raw.templates.iter().map(|t| template(t, &raw.templates, &mut bad)).collect();
-        let cells = cells(&raw, folder, &mut bad);
-        bad.finish()?;
-        let plan = Plan {
-            templates,
-            cells,
-            side: *raw.cell_m.get_ref(),
-            period: *raw.period_secs.get_ref(),
-            endless: raw.endless,
-            patterns: *raw.patterns.get_ref() as u64,
-            versions: raw.versions.into(),
-            seed: raw.seed,
+        if templates.is_empty() {
+            bad.found.push((1, "expected at least one template, found none".into()));
+        }
+        let layout = match (&raw.map, &raw.area) {
+            (Some(map), None) => Layout::Map(raw.plan(templates, cells(&raw, map, folder, &mut bad))),
+            (None, Some(area)) => Layout::Area(raw.area(area, templates, folder, &mut bad)),
+            _ => {
+                bad.found.push((1, "expected either a map or an area".into()));
+                Layout::Map(raw.plan(Vec::new(), Vec::new()))
+            }
         };
-        plan.validate()?;
-        Ok(Self { name: raw.name, plan })
+        bad.finish()?;
+        if let Layout::Map(plan) = &layout {
+            plan.validate()?;
+        }
+        Ok(Self { name: raw.name, layout })
+    }
+
+    /// The same scene with another seed.
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        match &mut self.layout {
+            Layout::Map(plan) => plan.seed = seed,
+            Layout::Area(area) => area.seed = seed,
+        }
+        self
+    }
+
+    /// Builds its world; on all cores, the result does not depend on their number. `progress` is told how many of how many
+    /// patches are done, and stops the work by returning false.
+    ///
+    /// # Errors
+    /// As [`Plan::build`] and [`Area::build`].
+    pub fn build(&self, progress: &(dyn Fn(usize, usize) -> bool + Sync)) -> Result<Built> {
+        match &self.layout {
+            Layout::Map(plan) => {
+                let world = plan.bake(&self.name, &plan.build_watched(progress)?)?;
+                Ok(Built { world, notes: Vec::new() })
+            }
+            Layout::Area(area) => area.build(&self.name, progress),
+        }
     }
 
     /// A scene from a TOML file; a scene without a name is called as its file.
@@ -184,6 +227,42 @@ impl WorldScene {
             scene.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         }
         Ok(scene)
+    }
+}
+
+impl SceneText {
+    fn plan(&self, templates: Vec<Template>, cells: Vec<Vec<usize>>) -> Plan {
+        Plan {
+            templates,
+            cells,
+            side: *self.cell_m.get_ref(),
+            period: *self.period_secs.get_ref(),
+            endless: self.endless,
+            patterns: *self.patterns.get_ref() as u64,
+            versions: self.versions.into(),
+            seed: self.seed,
+        }
+    }
+
+    fn area(&self, area: &Spanned<AreaText>, templates: Vec<Template>, folder: &Path, bad: &mut Problems) -> Area {
+        let coordinates = match area.get_ref().coordinates.as_str() {
+            "metres" => Coordinates::Metres,
+            "degrees" => Coordinates::Degrees,
+            other => {
+                bad.add(area.span(), format!("expected coordinates \"metres\" or \"degrees\", found {other:?}"));
+                Coordinates::Metres
+            }
+        };
+        if self.endless {
+            bad.add(area.span(), "expected an area to end, found endless = true".into());
+        }
+        let grounds = Area::load_geojson(&folder.join(&area.get_ref().file), coordinates, &templates);
+        let grounds = grounds.unwrap_or_else(|error| {
+            bad.add(area.span(), error.to_string());
+            Vec::new()
+        });
+        let (side, period) = (*self.cell_m.get_ref(), *self.period_secs.get_ref());
+        Area { templates, grounds, side, period, seed: self.seed }
     }
 }
 
@@ -247,8 +326,8 @@ fn amount(
 }
 
 /// Template of every cell: of a picture if the map names one, else of lines of characters.
-fn cells(raw: &SceneText, folder: &Path, bad: &mut Problems) -> Vec<Vec<usize>> {
-    let map = raw.map.get_ref();
+fn cells(raw: &SceneText, map: &Spanned<String>, folder: &Path, bad: &mut Problems) -> Vec<Vec<usize>> {
+    let (map, span) = (map.get_ref(), map.span());
     let found = if map.trim_end().ends_with(".png") && !map.contains('\n') {
         palette::cells(&folder.join(map), &colours(raw, bad))
     } else {
@@ -257,7 +336,7 @@ fn cells(raw: &SceneText, folder: &Path, bad: &mut Problems) -> Vec<Vec<usize>> 
         lines(map, &keys)
     };
     found.unwrap_or_else(|problem| {
-        bad.add(raw.map.span(), format!("map: {problem}"));
+        bad.add(span, format!("map: {problem}"));
         Vec::new()
     })
 }

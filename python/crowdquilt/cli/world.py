@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn
 from rich.progress import Progress as Bar
 
@@ -37,7 +38,7 @@ def make_world(
     expect_picture(plot, patch)
     begin = time.perf_counter()
     try:
-        made = build(WorldScene.load(scene).replace(seed=seed))
+        made, notes = build(WorldScene.load(scene).replace(seed=seed))
     except CrowdquiltError as error:
         # The core speaks of "map" and "patch"; the user knows them by their file.
         message = str(error)
@@ -45,16 +46,18 @@ def make_world(
     secs = time.perf_counter() - begin
     worlds.save(made, out)
     draw(made, plot, patch)
-    found = worlds.facts(made) | {"seconds": round(secs, 3)}
+    found = worlds.facts(made) | {"seconds": round(secs, 3), "notes": notes}
     if as_json:
         print(json.dumps(found, indent=2))
         return
-    console.print(facts(found))
+    console.print(facts({name: value for name, value in found.items() if name != "notes"}))
+    for note in notes:
+        console.print(f"[yellow]note[/yellow]: {escape(note)}", soft_wrap=True)
     written = [str(file) for file in (out, plot, patch) if file]
     console.print(f"{', '.join(written)}: written", soft_wrap=True)
 
 
-def build(scene: WorldScene) -> World:
+def build(scene: WorldScene) -> tuple[World, list[str]]:
     """Build with a progress bar; Ctrl-C stops it."""
     columns = (SpinnerColumn(), TextColumn("solving patches"), BarColumn(bar_width=24), MofNCompleteColumn())
     with Bar(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
