@@ -15,7 +15,7 @@ from statistics import median
 from rich.table import Table
 
 from crowdquilt import check, motion, patch, refine, samples
-from crowdquilt._core import PatchSet, Scene, measure_patches, measure_replay, measure_street, tile
+from crowdquilt._core import PatchSet, Scene, measure_patches, measure_poses, measure_replay, measure_street, tile
 
 PAPER = "Hyun et al. 2013, figure 7: Static, 907 patches, 2.93 GHz Core i7"
 Say = Callable[[str], None]
@@ -206,6 +206,13 @@ def stage(seeds: int, say: Say) -> list[Row]:
     """A million people played on one core; the paper: 3,700 people at 30 to 35 frames per second, drawn."""
     rows = []
     steering = "steering, best of those measured: 1.5 M agent-steps/s"
+    with tempfile.TemporaryDirectory() as folder:
+        samples.write(Path(folder), 1)
+        people, nanos = measure_poses(patch.cut(Path(folder)))
+    say(f"stage: replay-poses: {nanos:.0f} ns a body")
+    rows.append(
+        row("stage", "replay-poses: a full body (22 joints)", nanos / 1e3, "us", 1.06, "ozz-animation, 31 joints")
+    )
     for name, kinds, unique in (("1,000 shared kinds", 1000, False), ("unique patches", 1000, True)):
         runs = [measure_replay(1_000_000, kinds, unique) for _ in range(max(1, seeds // 2))]
         people, _, memory = runs[0][:3]

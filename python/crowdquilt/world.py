@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 from typing import Any
 
-from crowdquilt._core import Pattern, World, WorldScene
+from crowdquilt import patch, samples
+from crowdquilt._core import PatchSet, Pattern, World, WorldScene
 from crowdquilt._core import build_world as build
 from crowdquilt._core import check_world as check
 from crowdquilt.outputs import whole_file
 
-__all__ = ["Pattern", "World", "WorldScene", "build", "check", "facts", "holds_world", "save"]
+__all__ = ["Pattern", "World", "WorldScene", "build", "check", "facts", "holds_world", "sample_walks", "save"]
 
 MAGIC = b"CQWORLD"
 
@@ -19,6 +21,13 @@ def holds_world(path: Path) -> bool:
     """Whether a file is a baked world, told by its first bytes."""
     with path.open("rb") as file:
         return file.read(len(MAGIC)) == MAGIC
+
+
+def sample_walks() -> PatchSet:
+    """The patch set of the generated captures: how people walk if nobody says otherwise."""
+    with tempfile.TemporaryDirectory() as folder:
+        samples.write(Path(folder), 1)
+        return patch.cut(Path(folder))
 
 
 def save(world: World, path: Path) -> None:

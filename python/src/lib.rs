@@ -51,7 +51,8 @@ mod _core {
     use super::tiling::{Outcome, Progress, Scene, tile};
     #[pymodule_export]
     use super::world::{
-        Pattern, World, WorldScene, build_world, check_world, measure_patches, measure_replay, measure_street,
+        Pattern, World, WorldScene, build_world, check_world, measure_patches, measure_poses, measure_replay,
+        measure_street,
     };
 
     #[pymodule_export]

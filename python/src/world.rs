@@ -5,16 +5,18 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crowdquilt::check::world as check;
+use crowdquilt::motion::{JOINT_COUNT, canonical};
 use crowdquilt::stage::world as stage;
 use crowdquilt::world as core;
-use glam::{DVec2, Vec2};
-use numpy::{PyArray1, PyArray2};
+use glam::{DVec2, Quat, Vec2, Vec3};
+use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
 use crate::check::Report;
 use crate::error::run;
-use crate::numbers::{points2, table};
+use crate::numbers::{points2, stack, table};
+use crate::patch::PatchSet;
 use crate::progress::watched;
 
 /// What a world is made from: templates, and a map of where which is.
@@ -84,6 +86,7 @@ pub struct Pattern {
 pub struct World(pub Arc<stage::World>);
 
 type People<'py> = (Bound<'py, PyArray1<u64>>, Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<f32>>);
+type Bodies<'py> = (Bound<'py, PyArray1<u64>>, Bound<'py, PyArray3<f32>>);
 type Object<'py> = (String, Bound<'py, PyArray2<f32>>, f32);
 type Way<'py> = (f64, Bound<'py, PyArray2<f32>>);
 
@@ -287,6 +290,24 @@ impl World {
         self.0.stays(kind).into_iter().enumerate().map(way).collect()
     }
 
+    /// Whether walkers have full bodies.
+    #[getter]
+    fn has_bodies(&self) -> bool {
+        self.0.tables().gait.is_some()
+    }
+
+    /// The same world with full bodies, who walk as the people of `patches` do: the steps of each add up over borders and periods.
+    fn with_bodies(&self, py: Python<'_>, patches: &PatchSet) -> PyResult<Self> {
+        run(py, || core::with_gait(&self.0, core::gait_table(&patches.0)?)).map(|world| Self(Arc::new(world)))
+    }
+
+    /// Full bodies of all who walk in the patches that reach into a disc (x, z, radius), at a time: (n,) identities, (n, joints, 3)
+    /// joints in metres from the disc's middle. Nobody if the world has no bodies.
+    fn joints_near<'py>(&self, py: Python<'py>, secs: f64, near: (f64, f64, f64)) -> PyResult<Bodies<'py>> {
+        let (ids, joints) = py.detach(|| self.joints(secs, near));
+        Ok((PyArray1::from_vec(py, ids), stack(py, joints, JOINT_COUNT, 3)?))
+    }
+
     fn __len__(&self) -> usize {
         self.0.instances()
     }
@@ -298,6 +319,33 @@ impl World {
 }
 
 impl World {
+    fn joints(&self, secs: f64, (x, z, radius): (f64, f64, f64)) -> (Vec<u64>, Vec<f32>) {
+        let world = &*self.0;
+        let (mut ids, mut joints, mut globals) = (Vec::new(), Vec::new(), Vec::new());
+        let Some(gait) = &world.tables().gait else { return (ids, joints) };
+        let (middle, moment) = (DVec2::new(x, z), world.moment(secs));
+        let mut pose = [Quat::IDENTITY; JOINT_COUNT];
+        for spot in world.nearby().within(middle, radius) {
+            let instance = spot.instance as usize;
+            let place = (world.place(instance) + spot.shift - middle).as_vec2();
+            ids.extend(world.people_of(instance, self.copy(spot.shift), &moment).map(|person| person.hash(0)));
+            for body in world.bodies(spot, secs) {
+                let root = body.pose(&gait.table, &mut pose);
+                canonical().globals(root + Vec3::new(place.x, 0.0, place.y), &pose, &mut globals);
+                joints.extend(globals.iter().flat_map(|(position, _)| position.to_array()));
+            }
+        }
+        (ids, joints)
+    }
+
+    /// Which copy of the world is `shift` away.
+    fn copy(&self, shift: DVec2) -> [i64; 2] {
+        match self.repeat() {
+            Some((x, z)) => [(shift.x / x).round() as i64, (shift.y / z).round() as i64],
+            None => [0, 0],
+        }
+    }
+
     fn people(&self, secs: f64, origin: DVec2, near: Option<(f64, f64, f64)>) -> (Vec<u64>, Vec<f32>, Vec<f32>) {
         let (world, moment) = (&*self.0, self.0.moment(secs));
         let spots: Vec<stage::Spot> = match near {
@@ -308,11 +356,7 @@ impl World {
         };
         let mut roots = stage::Roots::default();
         world.roots_of(&moment, spots.iter().copied(), origin, &mut roots);
-        let copy = |shift: DVec2| match self.repeat() {
-            Some((x, z)) => [(shift.x / x).round() as i64, (shift.y / z).round() as i64],
-            None => [0, 0],
-        };
-        let people = spots.iter().flat_map(|s| world.people_of(s.instance as usize, copy(s.shift), &moment));
+        let people = spots.iter().flat_map(|s| world.people_of(s.instance as usize, self.copy(s.shift), &moment));
         let pairs = |a: &[f32], b: &[f32]| a.iter().zip(b).flat_map(|(a, b)| [*a, *b]).collect();
         let ids = people.map(|person| person.hash(0)).collect();
         (ids, pairs(roots.x(), roots.z()), pairs(roots.vx(), roots.vz()))
@@ -376,4 +420,10 @@ pub fn measure_street(py: Python<'_>, metres: f32) -> PyResult<(usize, usize, f6
     let walk = run(py, || core::measure_walk(&core::scenes::street(1)?, metres, 4, 1))?;
     let at = |share: f64| walk.frames[((walk.frames.len() - 1) as f64 * share) as usize];
     Ok((walk.made, walk.resident, at(0.5), at(0.99), at(1.0)))
+}
+
+/// Full bodies of `patches` in a dense world on one core: people, and nanoseconds for each.
+#[pyfunction]
+pub fn measure_poses(py: Python<'_>, patches: &PatchSet) -> PyResult<(usize, f64)> {
+    run(py, || core::measure_poses(&patches.0))
 }

@@ -28,6 +28,7 @@
 //! | `template.rs`, `plan.rs`, `furnish.rs` | what patches contain, which is where, the world that follows |
 //! | `area/` | worlds from walkable polygons: repaired, cut into convex cells |
 //! | `scene.rs` | scene files: templates, and a map in characters or a picture |
+//! | `gait.rs` | walking cycles out of captures, and steps for everybody |
 //! | `stream.rs` | an endless world around a camera |
 //! | `scenes.rs`, `measure.rs` | the street and the city of the paper; how long patches take |
 
@@ -37,6 +38,7 @@ mod bake;
 mod band;
 mod frame;
 mod furnish;
+mod gait;
 mod kinds;
 mod lattice;
 mod limits;
@@ -60,10 +62,11 @@ pub use crate::stage::world::{Identities, Link, Person};
 pub use area::{Area, Built, Coordinates, Ground};
 pub use bake::{Placement, bake};
 pub use frame::{Border, FramePatch, Standing, StaticObject};
+pub use gait::{gait_table, with_gait};
 pub use kinds::{Flow, PatternType, balance};
 pub use lattice::{Lattice, Sighting};
 pub use limits::Limits;
-pub use measure::{Creation, Replay, Walk, measure_creation, measure_replay, measure_walk};
+pub use measure::{Creation, Replay, Walk, measure_creation, measure_poses, measure_replay, measure_walk};
 pub use patch::{CrowdPatch, Port, Walker};
 pub use path::Path;
 pub use pattern::{Crossing, Pattern, balanced};

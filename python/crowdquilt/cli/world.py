@@ -13,7 +13,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColu
 from rich.progress import Progress as Bar
 
 from crowdquilt import world as worlds
-from crowdquilt._core import CrowdquiltError, World, WorldScene
+from crowdquilt._core import CrowdquiltError, PatchSet, World, WorldScene
 from crowdquilt.cli.app import CHECK_FAILED, app, console, example, expect_picture
 from crowdquilt.cli.tables import check_table, facts
 from crowdquilt.report import row_dict
@@ -32,6 +32,10 @@ def make_world(
     seed: Annotated[int | None, typer.Option(min=0, help="Same seed, same world; the scene's if not given.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw it from above: flows and densities.")] = None,
     patch: Annotated[Path | None, typer.Option(help="Draw its busiest patch, its patterns unrolled over time.")] = None,
+    patches: Annotated[
+        Path | None, typer.Option(help="Walk as the people of this patch set (.patches); generated ones if not given.")
+    ] = None,
+    bodies: Annotated[bool, typer.Option(help="Give everybody a full body; without, the file is smaller.")] = True,
     as_json: Annotated[bool, typer.Option("--json", help="Print what was made as JSON.")] = False,
 ) -> None:
     """Build a populated world from crowd patches: people walk in it for ever, and never touch anybody or anything."""
@@ -44,6 +48,8 @@ def make_world(
         message = str(error)
         raise CrowdquiltError(message if message.startswith(str(scene)) else f"{scene}: {message}") from None
     secs = time.perf_counter() - begin
+    if bodies:
+        made = made.with_bodies(PatchSet.load(patches) if patches else worlds.sample_walks())
     worlds.save(made, out)
     draw(made, plot, patch)
     found = worlds.facts(made) | {"seconds": round(secs, 3), "notes": notes}
@@ -82,8 +88,8 @@ def check_world(file: Path, as_json: bool) -> None:
     found = World.load(file)
     result = worlds.check(found)
     if as_json:
-        verdict = {"ok": result.ok, "check": [row_dict(row) for row in result.rows]}
-        print(json.dumps(worlds.facts(found) | verdict, indent=2))
+        held = {"ok": result.ok, "check": [row_dict(row) for row in result.rows]}
+        print(json.dumps(worlds.facts(found) | held, indent=2))
     else:
         console.print(check_table(result))
         failed = len(result.failures)

@@ -6,13 +6,29 @@
 
 use std::path::Path;
 
+use glam::{Quat, Vec3};
+
+use super::gait::{Gait, GaitTable};
 use super::identity::{Identities, Place, Round};
 use super::{Tables, World, WorldInfo};
 use crate::container::{Reader, Writer, write_whole};
+use crate::motion::{Skeleton, canonical};
 use crate::{Error, Result};
 
 const MAGIC: &[u8; 8] = b"CQWORLD\0";
 const VERSION: u32 = 1;
+
+/// The world's settings, and how many poses a walking cycle has if there are bodies.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Header {
+    #[serde(flatten)]
+    info: WorldInfo,
+    #[serde(default)]
+    gait_phases: Option<usize>,
+    /// What the rotations turn, for readers that do not know it.
+    #[serde(default, skip_deserializing)]
+    skeleton: Option<Skeleton>,
+}
 
 impl World {
     /// The world as the bytes of a world file.
@@ -53,7 +69,12 @@ impl World {
         writer.array("crossing_copies", &crossings.iter().flat_map(|c| c.copies).collect::<Vec<i32>>());
         writer.array("cycle_copies", &cycles.iter().flat_map(|c| c.copies).collect::<Vec<i32>>());
         writer.array("rows", &t.rows);
-        writer.finish(MAGIC, VERSION, &t.info)
+        if let Some(gait) = &t.gait {
+            write_gait(gait, &mut writer);
+        }
+        let skeleton = t.gait.as_ref().map(|_| canonical().clone());
+        let gait_phases = t.gait.as_ref().map(|gait| gait.table.phases);
+        writer.finish(MAGIC, VERSION, &Header { info: t.info.clone(), gait_phases, skeleton })
     }
 
     /// A world from the bytes of a world file.
@@ -62,9 +83,10 @@ impl World {
     /// Names the place: magic, version, header field, array.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let reader = Reader::open(bytes, MAGIC, VERSION..=VERSION)?;
-        let info: WorldInfo = reader.header()?;
+        let Header { info, gait_phases, .. } = reader.header()?;
         Self::new(Tables {
             info,
+            gait: gait_phases.map(|phases| read_gait(phases, &reader)).transpose()?,
             pattern_ends: reader.array("pattern_ends")?,
             pattern_lengths: reader.array("pattern_lengths")?,
             crossings: reader.array("crossings")?,
@@ -105,6 +127,37 @@ impl World {
         let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
         Self::from_bytes(&bytes).map_err(|e| e.in_file(path))
     }
+}
+
+fn write_gait(gait: &Gait, writer: &mut Writer) {
+    let table = &gait.table;
+    writer.array("gait_speeds", &table.speeds);
+    writer.array("gait_strides", &table.strides);
+    writer.array("gait_rotations", &table.rotations.iter().flat_map(|q| q.to_array()).collect::<Vec<f32>>());
+    writer.array("gait_hips", &table.hips.iter().flat_map(|p| p.to_array()).collect::<Vec<f32>>());
+    writer.array("gait_steps", &gait.steps);
+    writer.array("gait_headings", &gait.headings);
+    writer.array("crossing_phases", &gait.crossing_phases);
+    writer.array("cycle_paces", &gait.cycle_paces);
+}
+
+fn read_gait(phases: usize, reader: &Reader) -> Result<Gait> {
+    let rotations: Vec<f32> = reader.array("gait_rotations")?;
+    let hips: Vec<f32> = reader.array("gait_hips")?;
+    let table = GaitTable {
+        speeds: reader.array("gait_speeds")?,
+        strides: reader.array("gait_strides")?,
+        phases,
+        rotations: rotations.chunks_exact(4).map(Quat::from_slice).collect(),
+        hips: hips.chunks_exact(3).map(Vec3::from_slice).collect(),
+    };
+    Ok(Gait {
+        table,
+        steps: reader.array("gait_steps")?,
+        headings: reader.array("gait_headings")?,
+        crossing_phases: reader.array("crossing_phases")?,
+        cycle_paces: reader.array("cycle_paces")?,
+    })
 }
 
 fn identities(reader: &Reader) -> Result<Identities> {

@@ -125,6 +125,16 @@ impl Identities {
         (&self.crossings, &self.cycles)
     }
 
+    /// The cycle of a crossing.
+    pub fn cycle(&self, crossing: usize) -> u32 {
+        self.crossings[crossing].cycle
+    }
+
+    /// Periods from the cycle's begin to a crossing.
+    pub fn laps(&self, crossing: usize) -> i64 {
+        self.crossings[crossing].laps.into()
+    }
+
     /// Whether a cycle is a way through the world rather than a round in it.
     pub fn leads_out(&self, cycle: u32) -> bool {
         self.cycles[cycle as usize].people == 0

@@ -4,6 +4,7 @@
 
 use glam::DVec2;
 
+use super::gait::Gait;
 use super::identity::Identities;
 use super::kind::Kind;
 use super::place::UNITS_PER_METRE;
@@ -122,6 +123,8 @@ pub struct Tables {
     pub instance_phases: Vec<u32>,
     /// Who is who.
     pub identities: Identities,
+    /// Bodies, if there are any.
+    pub gait: Option<Gait>,
 }
 
 /// Words per kind in [`Tables::kinds`].
@@ -171,7 +174,8 @@ impl Tables {
             self.instance_turns.len() + self.instance_phases.len(),
         ];
         let (crossings, cycles) = self.identities.parts();
-        4 * four.iter().sum::<usize>() + 2 * self.rows.len() + 16 * crossings.len() + 12 * cycles.len()
+        let gait = self.gait.as_ref().map_or(0, Gait::bytes);
+        4 * four.iter().sum::<usize>() + 2 * self.rows.len() + 16 * crossings.len() + 12 * cycles.len() + gait
     }
 
     /// Whether the numbers make a world.
