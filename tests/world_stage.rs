@@ -157,6 +157,13 @@ fn a_world_file_comes_back_as_it_was() {
 }
 
 #[test]
+fn the_first_version_of_the_file_is_still_read() {
+    let world = World::load(std::path::Path::new("tests/files/v1.world")).unwrap();
+    assert_eq!((world.info().name.as_str(), world.instances(), world.tables().gait.is_some()), ("fixture", 4, true));
+    assert!(check_world(&world).ok());
+}
+
+#[test]
 fn shared_kinds_need_little_memory() {
     let plan = Plan { versions: 1, patterns: 1, ..scenes::city(64, false, 1).unwrap() };
     let (_, world) = baked(&plan);

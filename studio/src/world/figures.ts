@@ -2,8 +2,9 @@
 
 import {
   BufferAttribute,
-  CapsuleGeometry,
+  type BufferGeometry,
   Color,
+  CylinderGeometry,
   DataTexture,
   FloatType,
   InstancedBufferAttribute,
@@ -13,11 +14,13 @@ import {
   Mesh,
   MeshStandardMaterial,
   RGBAFormat,
+  SphereGeometry,
   SRGBColorSpace,
   UnsignedByteType,
   Vector3,
   type WebGLProgramParametersWithUniforms,
 } from "three";
+import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 import { buildMannequin, restPositions } from "../draw/mannequin";
 import { lookOf, looksOf, PART_COUNT, Part } from "../draw/palette";
 import { CLOTHES, skinning } from "../draw/shaders";
@@ -41,8 +44,7 @@ export class Figures {
   private readonly geometry = new InstancedBufferGeometry();
 
   constructor(private readonly gait: Gait | null) {
-    const figure = new CapsuleGeometry(0.19, 1.25, 3, 8).translate(0, 0.82, 0).scale(1, 1, 0.78);
-    this.far = new InstancedMesh(figure, new MeshStandardMaterial({ roughness: 0.85 }), MOST_FAR);
+    this.far = new InstancedMesh(figure(), new MeshStandardMaterial({ roughness: 0.85 }), MOST_FAR);
     this.far.frustumCulled = false;
     this.far.castShadow = true;
     if (!gait) return;
@@ -127,6 +129,15 @@ export class Figures {
     this.textures.push(made);
     return made;
   }
+}
+
+/** Somebody from afar: legs, trunk, arms and head in eight faces each. */
+function figure(): BufferGeometry {
+  const leg = (x: number) => new CylinderGeometry(0.085, 0.06, 0.86, 6).translate(x, 0.43, 0);
+  const arm = (x: number) => new CylinderGeometry(0.05, 0.04, 0.6, 5).rotateZ(Math.sign(x) * 0.1).translate(x, 1.12, 0);
+  const trunk = new CylinderGeometry(0.2, 0.15, 0.6, 8).scale(1, 1, 0.62).translate(0, 1.13, 0);
+  const head = new SphereGeometry(0.11, 8, 6).scale(0.9, 1.15, 1).translate(0, 1.6, 0.01);
+  return mergeGeometries([leg(-0.09), leg(0.09), arm(-0.25), arm(0.25), trunk, head]);
 }
 
 function inject(shader: WebGLProgramParametersWithUniforms, joints: number, uniforms: Record<string, unknown>): void {

@@ -25,6 +25,8 @@ const GROUNDS: Record<string, string> = {
   roof: "#8d8f94",
   water: "#9dc0d0",
 };
+/** Height of what is open below a house, metres. */
+const ARCADE = 3.3;
 const STAYER = "#8a5a44";
 
 /** A patch as geometry in the world's frame, with a colour at every vertex. */
@@ -33,7 +35,7 @@ export function patchMesh(world: World, place: Place): Group {
   const ground = world.templates[kind.template].ground;
   const color = GROUNDS[ground] ?? "#cfcabd";
   const parts = [floor(kind, color)];
-  if (ground === "roof" || (kind.walkers === 0 && ground === "floor")) parts.push(house(kind, place));
+  if (ground === "roof" || ground === "floor") parts.push(...house(kind, place));
   for (const thing of kind.things) parts.push(...standing(thing));
   for (const { x, z, heading } of kind.stayers) {
     const person = new CylinderGeometry(0.16, 0.2, 1.45, 8).translate(0, 0.72, 0);
@@ -86,11 +88,19 @@ function floor(kind: Kind, color: string): BufferGeometry {
   return painted(raised(outline(kind.outline), 0.02).translate(0, -0.02, 0), color);
 }
 
-function house(kind: Kind, place: Place): BufferGeometry {
+/** Where people walk below, a house stands on pillars. */
+function house(kind: Kind, place: Place): BufferGeometry[] {
   // The same house whenever it is looked at.
   const chance = Math.abs(Math.sin(place.x * 12.9898 + place.z * 78.233) * 43758.5453) % 1;
   const tint = ["#c9b8a3", "#b79f8b", "#d5cabb", "#a8a39a", "#bf8f78"][Math.floor(chance * 5)];
-  return painted(raised(outline(kind.outline, 0.985), 5 + 7 * chance), tint);
+  const open = kind.walkers > 0 ? ARCADE : 0;
+  const walls = painted(raised(outline(kind.outline, 0.985), 5 + 7 * chance).translate(0, open, 0), tint);
+  if (open === 0) return [walls];
+  const pillars = Array.from({ length: kind.outline.length / 2 }, (_, i) => {
+    const [x, z] = [kind.outline[2 * i] * 0.94, kind.outline[2 * i + 1] * 0.94];
+    return painted(new BoxGeometry(0.36, open, 0.36).translate(x, open / 2, z), tint);
+  });
+  return [walls, ...pillars];
 }
 
 /** What a static object looks like, by its name; unknown ones are plain columns and boxes. */

@@ -70,10 +70,10 @@ export class Sampler {
       const walker = kind.firstWalker + own;
       const slot = now.slot + ago * world.slots;
       if (slot < world.stays[2 * walker] || slot >= world.stays[2 * walker + 1]) continue;
-      const sum = (weights: readonly number[], offset: number) =>
-        weights.reduce((s, w, r) => s + w * world.rows[base + r * stride + offset], 0) * world.unit;
-      const [x, z] = [sum(now.place, lane), sum(now.place, lanes + lane)];
-      const [vx, vz] = [sum(now.velocity, lane), sum(now.velocity, lanes + lane)];
+      const x = this.sum(now.place, base + lane, stride);
+      const z = this.sum(now.place, base + lanes + lane, stride);
+      const vx = this.sum(now.velocity, base + lane, stride);
+      const vz = this.sum(now.velocity, base + lanes + lane, stride);
       const crossing = place.firstCrossing + own;
       const body = this.body(walker, slot - world.stays[2 * walker], now.u, crossing, Math.atan2(vx, vz));
       out.push({
@@ -85,6 +85,13 @@ export class Sampler {
         id: this.person(crossing, now.lap - ago, copy),
       });
     }
+  }
+
+  /** Four control points, weighed, in metres. */
+  private sum(w: readonly number[], at: number, stride: number): number {
+    const { rows, unit } = this.world;
+    const near = w[0] * rows[at] + w[1] * rows[at + stride];
+    return (near + w[2] * rows[at + 2 * stride] + w[3] * rows[at + 3 * stride]) * unit;
   }
 
   private body(walker: number, slot: number, u: number, crossing: number, ahead: number) {

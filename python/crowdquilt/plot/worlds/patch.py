@@ -130,8 +130,9 @@ def gates(axes: Axes, world: World, kind: int, outline: np.ndarray) -> None:
         along = (b - a) / max(float(np.hypot(*(b - a))), 1e-9)
         for crossings, colour, marker in ((pattern.inputs, 1, "^"), (pattern.outputs, 0, "v")):
             points = project(a + crossings[:, :1] * along, crossings[:, 1])
-            axes.scatter(points[:, 0], points[:, 1], s=52, color=style.TOGETHER[colour], marker=marker, zorder=21, edgecolors="white",
-                         linewidths=0.9)  # fmt: skip
+            right, up = points.T
+            tint = style.TOGETHER[colour]
+            axes.scatter(right, up, s=52, color=tint, marker=marker, zorder=21, edgecolors="white", linewidths=0.9)
 
 
 def clock(axes: Axes, outline: np.ndarray, period: float) -> None:

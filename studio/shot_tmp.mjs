@@ -1,0 +1,14 @@
+import { chromium } from "playwright-core";
+const [out, from, to, t] = process.argv.slice(2);
+const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", ignoreDefaultArgs: ["--disable-gpu"], args: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox", "--headless=new"] });
+const page = await browser.newPage({ viewport: { width: 1280, height: 760 } });
+page.on("console", (m) => console.log(m.type(), m.text().slice(0, 600)));
+page.on("pageerror", (e) => console.log("pageerror", e.message));
+await page.goto(`http://127.0.0.1:8765/?paused=1&t=${t ?? 4}`);
+await page.waitForFunction(() => window.crowdquiltWorld?.stats.pictures > 1, null, { timeout: 90000 });
+if (from) await page.evaluate(([a, b]) => window.crowdquiltWorld.walk.look(a, b), [from.split(",").map(Number), to.split(",").map(Number)]);
+const n = await page.evaluate(() => window.crowdquiltWorld.stats.pictures);
+await page.waitForFunction((n) => window.crowdquiltWorld.stats.pictures > n + 1, n, { timeout: 90000 });
+console.log(JSON.stringify(await page.evaluate(() => window.crowdquiltWorld.stats)));
+await page.screenshot({ path: out });
+await browser.close();
