@@ -311,7 +311,7 @@ fn a_step_out_of_the_region() {
 #[test]
 fn a_walk_through_a_wall() {
     let fault = |c: &mut Crowd| {
-        c.domain.obstacles.push(Polygon::rectangle(Vec2::new(1.25, 0.0), Vec2::new(2.0, 0.3)));
+        c.domain.obstacles.push(Polygon::rectangle(Vec2::new(1.25, 0.0), Vec2::new(2.0, 0.3)).into());
     };
     fails(fault, &["inside obstacles"]);
 }

@@ -69,11 +69,11 @@ fn the_same_seed_gives_the_same_crowd_on_any_number_of_threads() {
 fn obstacles_are_kept_out_of() {
     let mut scene = Scene { characters: 20, ..small() };
     let (low, high) = (glam::Vec2::new(4.0, 5.0), glam::Vec2::new(7.0, 6.5));
-    scene.obstacles.push(crowdquilt::geom::Polygon::rectangle(low, high));
+    scene.obstacles.push(crowdquilt::geom::Polygon::rectangle(low, high).into());
     let outcome = run(&scene, 2, &mut |_| true);
     assert!(!matches!(outcome.status, Status::Imperfect(_)), "{:?}", outcome.status);
     for root in outcome.crowd.characters.iter().flat_map(|c| &c.root) {
         let p = glam::Vec2::new(root.x, root.z);
-        assert!(scene.obstacles[0].signed_distance(p) > 0.1, "{p}");
+        assert!(scene.obstacles[0].outline.signed_distance(p) > 0.1, "{p}");
     }
 }

@@ -264,7 +264,7 @@ fn a_box_in_a_wall_and_one_in_the_floor() {
     let wall = |c: &mut Crowd| {
         let at = c.props[0].places.last().unwrap().middle;
         let corner = Vec2::new(at.x + 0.12, at.z - 0.01);
-        c.domain.obstacles.push(Polygon::rectangle(corner, corner + Vec2::new(0.02, 0.02)));
+        c.domain.obstacles.push(Polygon::rectangle(corner, corner + Vec2::new(0.02, 0.02)).into());
     };
     let mut broken = CROWD.clone();
     wall(&mut broken);

@@ -52,7 +52,7 @@ fn walls_and_obstacles_are_kept_clear_of() {
     let corners = [(0.0, 0.0), (9.0, 0.0), (9.0, 4.0), (5.0, 4.0), (5.0, 9.0), (0.0, 9.0)];
     let mut scene = Scene::demo();
     scene.region = Polygon::new(corners.map(|(x, z)| Vec2::new(x, z)).to_vec()).unwrap();
-    scene.obstacles = vec![Polygon::rectangle(Vec2::new(2.0, 2.0), Vec2::new(3.2, 2.8))];
+    scene.obstacles = vec![Polygon::rectangle(Vec2::new(2.0, 2.0), Vec2::new(3.2, 2.8)).into()];
     scene.characters = 12;
     scene.duration_secs = 12.0;
     scene.interaction = 0.1;
@@ -104,7 +104,7 @@ fn an_exit_that_nothing_can_follow_is_named() {
 #[test]
 fn obstacles_that_fill_the_region_are_named() {
     let mut scene = Scene::demo();
-    scene.obstacles = vec![Polygon::rectangle(Vec2::splat(-1.0), Vec2::splat(13.0))];
+    scene.obstacles = vec![Polygon::rectangle(Vec2::splat(-1.0), Vec2::splat(13.0)).into()];
     let message = tile(&scene, &common::plain_set(), &options(1), &mut |_| true).unwrap_err().to_string();
     assert!(message.contains("room"), "{message}");
 }

@@ -80,7 +80,7 @@ impl Scene {
     /// One (corners, 2) array for each obstacle.
     #[getter]
     fn obstacles<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f32>>>> {
-        self.0.obstacles.iter().map(|o| points2(py, &o.points)).collect()
+        self.0.obstacles.iter().map(|o| points2(py, &o.outline_at(0.0).points)).collect()
     }
 
     /// Length in seconds.

@@ -6,6 +6,7 @@ use super::depth::Body;
 use super::limits::Limits;
 use super::part::Part;
 use super::report::{Row, Worst};
+use crate::motion::FPS;
 use crate::stage::Crowd;
 
 #[derive(Default)]
@@ -63,7 +64,7 @@ fn frame_depths(crowd: &Crowd, chains: &[&[Part]], frame: u32) -> Depths {
             depths.region.offer(out as f64, place);
         }
         for (o, obstacle) in crowd.domain.obstacles.iter().enumerate() {
-            let inside = body.depth_in_obstacle(obstacle);
+            let inside = body.depth_in(obstacle, frame as f32 / FPS);
             if inside > 0.0 {
                 depths.obstacle.offer(inside as f64, || format!("{}, obstacle {o}", place()));
             }

@@ -8,7 +8,7 @@
 //! | 1 | chains of fragments begin and end at the borders of the domain's time, every role is played once | `chain.rs` |
 //! | 2 | stitches are closed, no joint turns or moves faster than in the captures, the path is what is seen | `stitch.rs`, `speed.rs` |
 //! | 3 | the deformation of every source frame is within its limits | `deformation.rs` |
-//! | 4, 7 | bodies stay apart, inside the region and out of obstacles | `bodies.rs`, `depth.rs` |
+//! | 4, 7 | bodies stay apart, inside the region and out of obstacles | `bodies.rs`, `depth.rs`, `obstacle.rs` |
 //! | 5 | people who touch in the capture still touch | `contact.rs` |
 //! | 6 | planted feet stay, joints turn no further than captured | `plant.rs`, `joint.rs` |
 //! | 2, 4, 5, 7 | boxes are held or rest, palms are on them, they enter nothing and do not fly | `prop.rs` |
@@ -22,6 +22,7 @@ mod deformation;
 mod depth;
 mod joint;
 mod limits;
+mod obstacle;
 mod part;
 mod plant;
 mod prop;

@@ -208,7 +208,7 @@ fn measure(crowd: &Crowd, parts: &[Part], i: usize, prop: &Prop, fastest: f32) -
         let block = Block::new(at, prop.size);
         let place = || format!("box {i}, frame {frame}");
         worst.floor.offer((0.5 * prop.size[1] - at.middle.y) as f64, place);
-        worst.wall.offer(block.depth_in_walls(&crowd.domain) as f64, place);
+        worst.wall.offer(block.depth_in_walls(&crowd.domain, frame as f32 / FPS) as f64, place);
         if let Some(before) = frame.checked_sub(prop.begin + 1) {
             let way = at.middle.distance(prop.places[before as usize].middle);
             worst.speed.offer((way * FPS / fastest) as f64, place);

@@ -7,7 +7,7 @@ use parry3d::shape::{Capsule, Cuboid, Shape};
 
 use super::depth::Body;
 use super::prop::on_ground;
-use crate::geom::{Polygon, Upright};
+use crate::geom::{Obstacle, Polygon, Upright};
 use crate::motion::joint;
 use crate::stage::DomainInfo;
 
@@ -87,13 +87,18 @@ impl Block {
     }
 
     /// How far the box reaches out of the region or into obstacles, metres.
-    pub(super) fn depth_in_walls(&self, domain: &DomainInfo) -> f32 {
+    pub(super) fn depth_in_walls(&self, domain: &DomainInfo, secs: f32) -> f32 {
         let turn = Quat::from_rotation_y(self.at.heading);
         let corner =
             |x: f32, z: f32| on_ground(self.at.middle + turn * Vec3::new(x * self.half.x, 0.0, z * self.half.z));
         let plan = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
         let out = plan.iter().map(|&p| domain.region.signed_distance(p)).fold(0.0, f32::max);
-        domain.obstacles.iter().map(|o| depth_of_plan(plan, o)).fold(out, f32::max)
+        let bottom = self.at.middle.y - self.half.y;
+        let inside = |o: &Obstacle| {
+            let below = o.height.map_or(f32::INFINITY, |top| top - bottom);
+            if below > 0.0 { depth_of_plan(plan, &o.outline_at(secs)).min(below) } else { 0.0 }
+        };
+        domain.obstacles.iter().map(inside).fold(out, f32::max)
     }
 }
 
@@ -158,10 +163,10 @@ mod tests {
         let block = Block::new(Upright { middle: Vec3::Y, heading: 0.3 }, [0.4, 0.3, 0.2]);
         let domain = |points: [(f32, f32); 3]| DomainInfo {
             region: Polygon::rectangle(Vec2::splat(-3.0), Vec2::splat(3.0)),
-            obstacles: vec![Polygon::new(points.map(|(x, z)| Vec2::new(x, z)).to_vec()).unwrap()],
+            obstacles: vec![Polygon::new(points.map(|(x, z)| Vec2::new(x, z)).to_vec()).unwrap().into()],
             last_frame: 0,
         };
-        assert!(block.depth_in_walls(&domain([(0.0, 0.0), (2.0, -0.01), (2.0, 0.01)])) > 0.05);
-        assert_eq!(block.depth_in_walls(&domain([(0.4, 0.0), (2.0, -0.01), (2.0, 0.01)])), 0.0);
+        assert!(block.depth_in_walls(&domain([(0.0, 0.0), (2.0, -0.01), (2.0, 0.01)]), 0.0) > 0.05);
+        assert_eq!(block.depth_in_walls(&domain([(0.4, 0.0), (2.0, -0.01), (2.0, 0.01)]), 0.0), 0.0);
     }
 }

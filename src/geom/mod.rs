@@ -1,12 +1,14 @@
-//! Transforms of the ground plane, polygons, capsules, boxes.
+//! Transforms of the ground plane, polygons, obstacles, capsules, boxes.
 
 mod capsule;
 pub mod complex;
 mod cuboid;
 mod ground;
+mod obstacle;
 mod polygon;
 
 pub use capsule::Capsule;
 pub use cuboid::{Cuboid, Upright};
 pub use ground::{Ground, Turn, wrap_angle};
+pub use obstacle::{Obstacle, Waypoint};
 pub use polygon::Polygon;

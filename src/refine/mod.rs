@@ -84,6 +84,24 @@ pub struct Performance {
     pub bodies: Vec<Body>,
     /// The boxes.
     pub props: Vec<Prop>,
+    /// The order of the boxes.
+    keys: Vec<prop::Key>,
+}
+
+impl Performance {
+    /// Takes over the motions of some people and the boxes that they carry: `who` are their numbers, ascending.
+    fn replace(&mut self, who: &[usize], bodies: Vec<Body>, led: Vec<(prop::Key, Prop)>) {
+        let is_old = |key: &prop::Key| who.binary_search(&key.1).is_err();
+        let kept = std::mem::take(&mut self.keys).into_iter().zip(std::mem::take(&mut self.props));
+        let mut all: Vec<(prop::Key, Prop)> = kept.filter(|(key, _)| is_old(key)).collect();
+        all.extend(led.into_iter().map(|((sat, person, segment, k), mut prop)| {
+            prop.holds.iter_mut().for_each(|h| h.character = who[h.character as usize] as u32);
+            ((sat, who[person], segment, k), prop)
+        }));
+        all.sort_by_key(|(key, _)| *key);
+        (self.keys, self.props) = all.into_iter().unzip();
+        who.iter().zip(bodies).for_each(|(&person, body)| self.bodies[person] = body);
+    }
 }
 
 /// The final motion of a person over the frames 0..=last_frame of the crowd at which the person is there.
@@ -104,10 +122,20 @@ fn walk(segments: &[Segment], last_frame: u32) -> Body {
 /// The final motions of people who act together: each as [`refine`]d alone, but brought to touch again whom they touched,
 /// and boxes go from hand to hand. In parallel over people.
 pub fn refine_all(people: &[Vec<Segment>], last_frame: u32) -> Performance {
+    let mut out = Performance { bodies: vec![Body::default(); people.len()], ..Performance::default() };
+    let who: Vec<usize> = (0..people.len()).collect();
+    refine_some(people, &who, last_frame, &mut out);
+    out
+}
+
+/// The same of some of them only; `who` are their numbers, ascending. Who shares a patch with one of them must be one of
+/// them.
+pub fn refine_some(people: &[Vec<Segment>], who: &[usize], last_frame: u32, out: &mut Performance) {
+    let people: Vec<Vec<Segment>> = who.iter().map(|&person| people[person].clone()).collect();
     let mut bodies: Vec<Body> = people.par_iter().map(|segments| walk(segments, last_frame)).collect();
-    touch::restore(people, &mut bodies);
-    let props = prop::lead(people, &mut bodies, last_frame);
-    Performance { bodies, props }
+    touch::restore(&people, &mut bodies);
+    let led = prop::lead(&people, &mut bodies, last_frame);
+    out.replace(who, bodies, led);
 }
 
 fn smoothstep(x: f32) -> f32 {
@@ -119,7 +147,7 @@ fn smoothstep(x: f32) -> f32 {
 /// crowd as it was baked comes out as it is. O(people x frames), in parallel over people.
 pub fn refine_crowd(crowd: &Crowd) -> Crowd {
     let people: Vec<Vec<Segment>> = crowd.characters.iter().map(|c| segments_of(crowd, c)).collect();
-    let Performance { bodies, props } = refine_all(&people, crowd.domain.last_frame);
+    let Performance { bodies, props, .. } = refine_all(&people, crowd.domain.last_frame);
     let dress = |((body, segments), c): ((Body, &Vec<Segment>), &Character)| {
         let body = fit(&body, &holds(segments, body.begin), &c.build);
         let rotations = body.rotations.into_iter().map(filed_rotation).collect();

@@ -30,28 +30,35 @@ const MAX_SHIFT: f32 = 0.15;
 const PALM_DEPTH: f32 = 0.012;
 const HANDS: [JointId; 2] = [LEFT_HAND, RIGHT_HAND];
 
-/// Puts hands onto the boxes that they hold, and answers these, in the order in which people (by number) come to hold
-/// them. O(people x frames with a box in the hands).
-pub(super) fn lead(people: &[Vec<Segment>], bodies: &mut [Body], last_frame: u32) -> Vec<Prop> {
+/// A box's place in the order of all: those that are held first, each by who is the first in number to hold it, that
+/// person's segment and the number of the box in its kind.
+pub(super) type Key = (bool, usize, usize, usize);
+
+/// Puts hands onto the boxes that they hold, and answers these. O(people x frames with a box in the hands).
+pub(super) fn lead(people: &[Vec<Segment>], bodies: &mut [Body], last_frame: u32) -> Vec<(Key, Prop)> {
     let mut props = Vec::new();
-    for stints in found(people) {
+    for (key, stints) in found(people) {
         let life = Life::new(stints, bodies);
         life.turns.iter().for_each(|turn| life.put_hands(turn, &mut bodies[turn.person]));
-        props.extend(life.prop(last_frame));
+        props.extend(life.prop(last_frame).map(|prop| (key, prop)));
     }
-    props.extend(people.iter().flatten().flat_map(|segment| standing(segment, last_frame)));
+    for (person, segments) in people.iter().enumerate() {
+        for (at, segment) in segments.iter().enumerate() {
+            props.extend(standing(segment, last_frame).map(|(k, prop)| ((true, person, at, k), prop)));
+        }
+    }
     props
 }
 
 /// The boxes that nobody moves, on which the person of a segment is the first to sit.
-fn standing<'a>(segment: &'a Segment, last_frame: u32) -> impl Iterator<Item = Prop> + 'a {
+fn standing<'a>(segment: &'a Segment, last_frame: u32) -> impl Iterator<Item = (usize, Prop)> + 'a {
     let role = segment.placed.role;
-    segment.kind.props.iter().filter(|p| p.holds.is_empty()).filter_map(move |p| {
+    segment.kind.props.iter().enumerate().filter(|(_, p)| p.holds.is_empty()).filter_map(move |(k, p)| {
         let (_, clock) = p.anchors()[0].filter(|a| a.0 == role)?;
         let frame = (clock - segment.kind.fragments[role as usize].begin) as usize;
         let place = p.before?.carried(world_from_patch(segment, frame));
         let places = vec![place; last_frame as usize + 1];
-        Some(Prop { name: p.name.clone(), size: p.size, begin: 0, places, holds: vec![] })
+        Some((k, Prop { name: p.name.clone(), size: p.size, begin: 0, places, holds: vec![] }))
     })
 }
 
@@ -94,22 +101,22 @@ fn world_from_patch(segment: &Segment, frame: usize) -> crate::geom::Ground {
 }
 
 /// The holds of every box, joined where one fragment takes a box along that the next brings.
-fn found<'a>(people: &[Vec<Segment<'a>>]) -> Vec<Vec<Stint<'a>>> {
+fn found<'a>(people: &[Vec<Segment<'a>>]) -> Vec<(Key, Vec<Stint<'a>>)> {
     let mut found = Found::default();
     for (person, segments) in people.iter().enumerate() {
         let mut carried = None;
-        for segment in segments {
+        for (at, segment) in segments.iter().enumerate() {
             let (instance, role, kind) = (segment.placed.instance, segment.placed.role, segment.kind);
             let mine = |p: &PatchProp| p.holds.iter().any(|h| h.role == role);
             for (k, prop) in kind.props.iter().enumerate().filter(|(_, p)| mine(p)) {
-                let own = found.number(instance, k);
+                let own = found.number(instance, k, (false, person, at, k));
                 found.stints[own].extend(Stint::all(person, segment, prop));
             }
             if let (Some(before), Some(k)) = (carried, kind.carried_in(role)) {
-                let own = found.number(instance, k);
+                let own = found.number(instance, k, (false, person, at, k));
                 found.join(before, own);
             }
-            carried = kind.carried_out(role).map(|k| found.number(instance, k));
+            carried = kind.carried_out(role).map(|k| found.number(instance, k, (false, person, at, k)));
         }
     }
     found.boxes()
@@ -120,16 +127,18 @@ fn found<'a>(people: &[Vec<Segment<'a>>]) -> Vec<Vec<Stint<'a>>> {
 struct Found<'a> {
     numbers: BTreeMap<(u32, usize), usize>,
     stints: Vec<Vec<Stint<'a>>>,
+    keys: Vec<Key>,
     /// Of boxes that turned out to be one the later refers to the earlier, others to themselves.
     same_as: Vec<usize>,
 }
 
 impl<'a> Found<'a> {
-    fn number(&mut self, instance: u32, prop: usize) -> usize {
+    fn number(&mut self, instance: u32, prop: usize, key: Key) -> usize {
         let new = self.stints.len();
         let number = *self.numbers.entry((instance, prop)).or_insert(new);
         if number == new {
             self.stints.push(Vec::new());
+            self.keys.push(key);
             self.same_as.push(new);
         }
         number
@@ -147,7 +156,7 @@ impl<'a> Found<'a> {
         self.same_as[a.max(b)] = a.min(b);
     }
 
-    fn boxes(mut self) -> Vec<Vec<Stint<'a>>> {
+    fn boxes(mut self) -> Vec<(Key, Vec<Stint<'a>>)> {
         for number in (0..self.stints.len()).rev() {
             let first = self.first(number);
             if first != number {
@@ -155,7 +164,7 @@ impl<'a> Found<'a> {
                 self.stints[first].extend(own);
             }
         }
-        self.stints.into_iter().filter(|s| !s.is_empty()).collect()
+        self.keys.into_iter().zip(self.stints).filter(|(_, s)| !s.is_empty()).collect()
     }
 }
 

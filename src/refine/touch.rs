@@ -26,7 +26,7 @@ struct Player<'a> {
     segment: &'a Segment<'a>,
 }
 
-/// Leads touching hands together in all instances. Errors below a tenth of a millimetre are left alone.
+/// Leads touching hands together in all instances, in order of time. Errors below a tenth of a millimetre are left alone.
 pub(super) fn restore(people: &[Vec<Segment>], bodies: &mut [Body]) {
     let mut instances: BTreeMap<u32, Vec<Player>> = BTreeMap::new();
     for (person, segments) in people.iter().enumerate() {
@@ -34,7 +34,10 @@ pub(super) fn restore(people: &[Vec<Segment>], bodies: &mut [Body]) {
             instances.entry(segment.placed.instance).or_default().push(Player { person, segment });
         }
     }
-    for players in instances.values() {
+    let mut instances: Vec<Vec<Player>> = instances.into_values().collect();
+    // By number they would come in another order once instances are numbered anew.
+    instances.sort_by_key(|players| (players[0].segment.placed.begin, players[0].person));
+    for players in &instances {
         for contact in &players[0].segment.kind.contacts {
             let player = |t: &Touch| players.iter().find(|p| p.segment.placed.role == t.role);
             if let (Some(a), Some(b)) = (player(&contact.a), player(&contact.b)) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{Quat, Vec2, Vec3};
 
 use super::Prop;
-use crate::geom::Polygon;
+use crate::geom::{Obstacle, Polygon};
 use crate::motion::{Build, FPS, JOINT_COUNT, Skeleton};
 use crate::patch::PatchSet;
 
@@ -14,8 +14,8 @@ use crate::patch::PatchSet;
 pub struct DomainInfo {
     /// Everybody stays inside.
     pub region: Polygon,
-    /// Everybody stays out; full height.
-    pub obstacles: Vec<Polygon>,
+    /// Everybody stays out.
+    pub obstacles: Vec<Obstacle>,
     /// The crowd lives from frame 0 to this frame, inclusive; the time is open at both ends (cropped).
     pub last_frame: u32,
 }

@@ -1,7 +1,8 @@
 //! The crowd file (`*.crowd`, magic `CQCROWD`): a [container](crate::container).
 //!
-//! Header: `fps`, `seed`, `skeleton` (joints with name, parent, offset, tip), `domain` (region, obstacles: `points`;
-//! `last_frame`), `instances` (kind), `set` (the patch set's header, see [`crate::patch`]), `builds` (name; `offsets`: x, y,
+//! Header: `fps`, `seed`, `skeleton` (joints with name, parent, offset, tip), `domain` (region, obstacles: `points`,
+//! and if they are low or move `height` and `path`, way-points of `secs`, `position`, `heading` about which the points
+//! are; `last_frame`), `instances` (kind), `set` (the patch set's header, see [`crate::patch`]), `builds` (name; `offsets`: x, y,
 //! z per joint, which stand in for the skeleton's; `flesh`: how a body's surface around each joint differs from the
 //! canonical body's: scale x, y, z about the joint in the rest pose, shift forward) and `characters`: each has `begin`
 //! (first frame), `frames`, `build` (index), and `fragments` (instance, role, begin, end, `samples` = number of path
@@ -14,7 +15,8 @@
 //! fragments; `prop_places` f32 x,y,z of the box's middle and heading (turn about +y, radians; boxes stay level) per
 //! frame, all boxes one after the other; and the patch set's arrays with the prefix `set_`.
 //!
-//! Versions: 1 had no `props`; both are read, 2 is written.
+//! Versions: 1 had no `props`, 2 no `height` and `path` of obstacles; all are read, 3 is written where it is needed, else
+//! 2.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -23,13 +25,15 @@ use glam::{Quat, Vec2, Vec3};
 
 use super::{Character, Crowd, DomainInfo, FragmentUse, Holding, Instance, Prop};
 use crate::container::{Reader, Writer, write_whole};
-use crate::geom::Upright;
+use crate::geom::{Obstacle, Upright};
 use crate::motion::{Build, BuildRows, FPS, JOINT_COUNT, Skeleton, canonical};
 use crate::patch::{PatchSet, pack_rotation, unpack_rotation};
 use crate::{Error, Result};
 
 const MAGIC: &[u8; 8] = b"CQCROWD\0";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
+/// What crowds are written as whose obstacles are all walls.
+const WALLS_ONLY: u32 = 2;
 
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Header {
@@ -103,7 +107,8 @@ impl Crowd {
             props: self.props.iter().map(prop_header).collect(),
             set,
         };
-        writer.finish(MAGIC, VERSION, &header)
+        let walls_only = self.domain.obstacles.iter().all(Obstacle::is_wall);
+        writer.finish(MAGIC, if walls_only { WALLS_ONLY } else { VERSION }, &header)
     }
 
     /// A crowd from the bytes of a crowd file.
@@ -126,6 +131,9 @@ impl Crowd {
         let read = |(i, c)| arrays.character(i, c);
         let characters = header.characters.into_iter().enumerate().map(read).collect::<Result<Vec<_>>>()?;
         let props = props(header.props, &reader)?;
+        for (i, problem) in header.domain.obstacles.iter().enumerate().filter_map(|(i, o)| Some((i, o.problem()?))) {
+            return Err(Error::invalid("crowd", format!("obstacle {i}"), problem));
+        }
         let crowd =
             Self { seed: header.seed, domain: header.domain, set, instances: header.instances, characters, props };
         crowd.check_references()?;

@@ -6,7 +6,8 @@ use super::Scene;
 use super::builds::people;
 use super::domain::Domain;
 use super::library::Library;
-use super::occupancy::{Occupancy, Piece, PieceId};
+use super::occupancy::{Occupancy, PieceId};
+use super::piece::Piece;
 use crate::patch::{Fragment, PatchKind, filed_rotation};
 use crate::refine::{Body, Performance};
 use crate::stage::{Character, Crowd, DomainInfo, FragmentUse, Instance};
@@ -65,8 +66,16 @@ impl<'a> Chains<'a> {
 
 /// The fragments of a person that are seen within the domain's time, in order: kind and placement.
 pub(super) fn segments_of<'a>(chains: Chains<'a>, person: usize) -> Vec<(&'a PatchKind, FragmentUse)> {
-    let library = chains.library;
-    let seen = chains.pieces(person).filter(|p| p.end > 0 && p.begin < chains.domain.horizon);
+    uses(chains.library, chains.domain.horizon, chains.pieces(person))
+}
+
+/// The same of some pieces in order of time.
+pub(super) fn uses<'a, 'p>(
+    library: &Library<'a>,
+    horizon: i32,
+    pieces: impl Iterator<Item = &'p Piece>,
+) -> Vec<(&'a PatchKind, FragmentUse)> {
+    let seen = pieces.filter(|p| p.end > 0 && p.begin < horizon);
     seen.map(|piece| {
         let role = &library.roles[piece.role as usize];
         let placed = FragmentUse {
@@ -84,7 +93,7 @@ pub(super) fn segments_of<'a>(chains: Chains<'a>, person: usize) -> Vec<(&'a Pat
 
 /// The finished crowd. Instances are numbered in the order in which people meet them.
 pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, played: Performance) -> Crowd {
-    let Performance { bodies, props } = played;
+    let Performance { bodies, props, .. } = played;
     let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
     let mut instances = Vec::new();
     let mut characters = Vec::with_capacity(bodies.len());

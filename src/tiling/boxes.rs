@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use super::bake::Chains;
-use super::domain::Domain;
+use super::domain::{Domain, Spot};
 use super::figure::{Figure, REACH, TOLERANCE, frame_at};
 use super::piece::Piece;
 use super::tracks::TrackId;
@@ -33,7 +33,7 @@ pub(super) fn in_the_way(chains: Chains, played: &Performance, tick: i32) -> Vec
                 pairs.push((other.min(t), other.max(t)));
             }
         }
-        if is_in_wall(cuboid, chains.domain) {
+        if is_in_wall(cuboid, chains.domain, tick) {
             pairs.extend(keeper().map(|k| (k, k)));
         }
         for (other, theirs) in &here[..i] {
@@ -97,15 +97,15 @@ pub(super) fn depth_in(cuboid: &Cuboid, capsules: &[Capsule]) -> f32 {
     capsules.iter().map(|c| cuboid.penetration(c)).fold(0.0, f32::max)
 }
 
-fn is_in_wall(cuboid: &Cuboid, domain: &Domain) -> bool {
-    let place = cuboid.at.ground().position;
-    if domain.holds(place, cuboid.radius()) {
+fn is_in_wall(cuboid: &Cuboid, domain: &Domain, tick: i32) -> bool {
+    let at = Spot { tick, lift: cuboid.at.middle.y - cuboid.half.y + TOLERANCE };
+    if domain.holds(at, cuboid.at.ground().position, cuboid.radius()) {
         return false;
     }
     let plan = cuboid.plan();
     (0..plan.len()).any(|i| {
         let (a, b) = (plan[i], plan[(i + 1) % plan.len()]);
         let steps = (a.distance(b) / SPACING).ceil().max(1.0) as usize;
-        (0..steps).any(|k| !domain.holds(a.lerp(b, k as f32 / steps as f32), -TOLERANCE))
+        (0..steps).any(|k| !domain.holds(at, a.lerp(b, k as f32 / steps as f32), -TOLERANCE))
     })
 }

@@ -3,15 +3,16 @@
 //! Best-first search over rigidly placed patches, which stitch exactly; only the last one or two are deformed so that
 //! the chain ends exactly where it must. Wherever the rest can be closed by such a strand the search ends.
 
-use std::collections::{BinaryHeap, HashSet};
+use std::collections::BinaryHeap;
 
 use rand::{Rng, RngExt};
 use rand_chacha::ChaCha8Rng;
+use rustc_hash::FxHashSet;
 
-use super::domain::Domain;
+use super::domain::Spot;
 use super::library::{Closing, Library, Move, Span};
-use super::occupancy::{Occupancy, Piece};
-use super::piece::Rigid;
+use super::piece::{Company, Piece, Rigid};
+use super::view::View;
 use crate::geom::{Ground, wrap_angle};
 use crate::motion::{FPS, MotionPath};
 
@@ -78,9 +79,10 @@ struct Node {
     role: u32,
     /// Whether the way to here leaves boxes lying, which the rest of it must not run into.
     boxed: bool,
-    /// Placed and found free when first expanded.
-    piece: Option<Piece>,
 }
+
+/// In place of a role: where the search begins.
+const ROOT: u32 = u32::MAX;
 
 #[derive(PartialEq)]
 struct Entry {
@@ -101,47 +103,53 @@ impl Ord for Entry {
     }
 }
 
-/// What a search looks at.
-#[derive(Clone, Copy)]
-pub(super) struct View<'a> {
-    /// The patches.
-    pub library: &'a Library<'a>,
-    /// Walls and time.
-    pub domain: &'a Domain,
-    /// Who is where.
-    pub occupancy: &'a Occupancy,
-}
-
 /// The search with its reusable buffers.
-#[derive(Default)]
 pub(super) struct Bridge {
     nodes: Vec<Node>,
     heap: BinaryHeap<Entry>,
-    seen: HashSet<(i32, i32, i32, i32, u32)>,
+    seen: FxHashSet<u64>,
+    backward: bool,
+    company: Company,
     path: MotionPath,
+}
+
+impl Default for Bridge {
+    fn default() -> Self {
+        Self {
+            nodes: vec![],
+            heap: BinaryHeap::new(),
+            seen: FxHashSet::default(),
+            backward: false,
+            company: Company::NONE,
+            path: MotionPath::default(),
+        }
+    }
 }
 
 impl Bridge {
     /// A chain of free pieces, in order of time, from `from` to `goal`; `None` if none was found in `taste.expansions`.
     ///
-    /// Time O(expansions x moves x frames).
+    /// `company` has the patches of several people that the chain leads from and to. Time O(expansions x moves x frames).
     pub fn search(
         &mut self,
         view: View,
         from: Port,
         goal: Goal,
+        company: Company,
         taste: Taste,
         rng: &mut ChaCha8Rng,
     ) -> Option<Vec<Piece>> {
+        self.company = company;
         self.nodes.clear();
         self.heap.clear();
         self.seen.clear();
-        self.push(Node { at: from, cost: 0.0, parent: 0, role: u32::MAX, boxed: false, piece: None }, 0.0);
+        self.backward = matches!(goal, Goal::Since(_));
+        self.push(Node { at: from, cost: 0.0, parent: 0, role: ROOT, boxed: false }, 0.0);
         let mut expansions = 0;
         while let Some(Entry { node, .. }) = self.heap.pop() {
             let at = self.nodes[node as usize].at;
             // A state counts as seen once a free patch has led to it: the first that would may be blocked.
-            if self.seen.contains(&key(&at)) || !self.place(view, node, goal) {
+            if self.seen.contains(&key(&at)) || !self.is_free(view, node) {
                 continue;
             }
             self.seen.insert(key(&at));
@@ -151,12 +159,12 @@ impl Bridge {
                 Goal::Since(tick) => at.tick <= tick,
             };
             if done {
-                return Some(self.chain(node, matches!(goal, Goal::Since(_)), vec![]));
+                return Some(self.chain(view, node, vec![]));
             }
             if let Goal::Port(to) = goal
                 && let Some(last) = self.close(view, node, to, rng)
             {
-                return Some(self.chain(node, false, last));
+                return Some(self.chain(view, node, last));
             }
             expansions += 1;
             if expansions > taste.expansions {
@@ -172,36 +180,55 @@ impl Bridge {
         self.nodes.push(node);
     }
 
-    /// Places the node's patch; false if it is not free.
-    fn place(&mut self, view: View, node: u32, goal: Goal) -> bool {
+    /// Entry and tick of a node's patch.
+    fn entry(&self, node: u32) -> (Ground, i32) {
         let n = &self.nodes[node as usize];
-        if n.role == u32::MAX {
+        let at = if self.backward { n.at } else { self.nodes[n.parent as usize].at };
+        (at.at, at.tick)
+    }
+
+    fn piece(&self, view: View, node: u32) -> Piece {
+        let (entry, begin) = self.entry(node);
+        let role = self.nodes[node as usize].role;
+        Piece {
+            company: self.company_of(node),
+            ..Piece::rigid(view.library, view.domain, role, NO_INSTANCE, entry, begin)
+        }
+    }
+
+    /// The patches that a node's patch leads from and to: only the one next to where the search began is known.
+    fn company_of(&self, node: u32) -> Company {
+        match (self.nodes[node as usize].parent, self.backward) {
+            (0, false) => Company { to: NO_INSTANCE, ..self.company },
+            (0, true) => Company { from: NO_INSTANCE, ..self.company },
+            _ => Company::NONE,
+        }
+    }
+
+    /// True if the patch that leads to a node is in nobody's way.
+    fn is_free(&self, view: View, node: u32) -> bool {
+        let Node { role, boxed, parent, .. } = self.nodes[node as usize];
+        if role == ROOT {
             return true;
         }
-        let (entry, begin) = match goal {
-            Goal::Since(_) => (n.at.at, n.at.tick),
-            _ => (self.nodes[n.parent as usize].at.at, self.nodes[n.parent as usize].at.tick),
-        };
-        let View { library, domain, occupancy } = view;
-        let boxes = library.roles[n.role as usize].leaves_box();
-        if !boxes && !occupancy.is_free_rigid(library, domain, n.role, Rigid::new(library, n.role, entry, begin)) {
+        let leaves_box = view.library.roles[role as usize].leaves_box();
+        let (entry, begin) = self.entry(node);
+        if !leaves_box && !view.is_free_rigid(role, Rigid::new(view.library, role, entry, begin), self.company_of(node)) {
             return false;
         }
-        let piece = Piece::rigid(library, domain, n.role, NO_INSTANCE, entry, begin);
-        if (boxes && !occupancy.is_free(library, domain, &piece))
-            || (n.boxed && self.meets_own_way(view, n.parent, &piece))
-        {
-            return false;
+        if !boxed {
+            return true;
         }
-        self.nodes[node as usize].piece = Some(piece);
-        true
+        let piece = self.piece(view, node);
+        !(leaves_box && !view.is_free(&piece)) && !self.meets_own_way(view, parent, &piece)
     }
 
     /// True if a piece runs into a box on the way to a node, or its own box lies on that way.
     fn meets_own_way(&self, view: View, node: u32, piece: &Piece) -> bool {
         let mut at = node;
-        while let Some(other) = &self.nodes[at as usize].piece {
-            if (other.leaves_box() || piece.leaves_box()) && piece.meets(other, view.library) {
+        while self.nodes[at as usize].role != ROOT {
+            let other = self.piece(view, at);
+            if (other.leaves_box() || piece.leaves_box()) && piece.meets(&other, view.library) {
                 return true;
             }
             at = self.nodes[at as usize].parent;
@@ -221,7 +248,9 @@ impl Bridge {
             let place = from.at.position + turn.apply(step.to.position);
             let at = Ground::new(place, from.at.heading + step.to.heading);
             let at = Port { at, tick: from.tick + direction * step.ticks, group: step.group };
-            let inside = at.tick < 0 || at.tick > view.domain.horizon || view.domain.holds(at.at.position, WALL_ROOM);
+            let inside = at.tick < 0
+                || at.tick > view.domain.horizon
+                || view.domain.holds(Spot::ground(at.tick), at.at.position, WALL_ROOM);
             if !inside || self.seen.contains(&key(&at)) {
                 continue;
             }
@@ -229,7 +258,7 @@ impl Bridge {
                 cost + step_cost(view, step, taste) * rng.random_range(0.85..1.2) + clutter(view, step, from.tick);
             if let Some(left) = cost_left(&at, goal) {
                 let boxed = boxed || view.library.roles[step.role as usize].leaves_box();
-                self.push(Node { at, cost, parent: node, role: step.role, boxed, piece: None }, cost + left);
+                self.push(Node { at, cost, parent: node, role: step.role, boxed }, cost + left);
             }
         }
     }
@@ -241,8 +270,7 @@ impl Bridge {
         if left <= 0 || left > CLOSE_WITHIN_TICKS {
             return None;
         }
-        let groups = view.library.set.groups.len();
-        let closings = &view.library.closings[from.group as usize * groups + to.group as usize];
+        let closings = view.library.closings_between(from.group, to.group);
         let count = closings.all.len();
         if count == 0 {
             return None;
@@ -259,21 +287,23 @@ impl Bridge {
         if !closing.strand.deform(from.at, to.at, &view.library.limits, &mut self.path) {
             return None;
         }
-        let pieces = split(view, closing, &self.path, from.tick, to.tick)?;
-        let free = |p: &Piece| {
-            view.occupancy.is_free(view.library, view.domain, p) && !(boxed && self.meets_own_way(view, node, p))
-        };
+        let mut pieces = split(view, closing, &self.path, from.tick, to.tick)?;
+        if node == 0 {
+            pieces[0].company.from = self.company.from;
+        }
+        pieces.last_mut()?.company.to = self.company.to;
+        let free = |p: &Piece| view.is_free(p) && !(boxed && self.meets_own_way(view, node, p));
         pieces.iter().all(free).then_some(pieces)
     }
 
-    fn chain(&mut self, node: u32, backward: bool, last: Vec<Piece>) -> Vec<Piece> {
+    fn chain(&self, view: View, node: u32, last: Vec<Piece>) -> Vec<Piece> {
         let mut pieces = Vec::new();
         let mut at = node;
-        while let Some(piece) = self.nodes[at as usize].piece.take() {
-            pieces.push(piece);
+        while self.nodes[at as usize].role != ROOT {
+            pieces.push(self.piece(view, at));
             at = self.nodes[at as usize].parent;
         }
-        if !backward {
+        if !self.backward {
             pieces.reverse();
         }
         pieces.extend(last);
@@ -293,9 +323,20 @@ impl Span {
 
 /// Number of strands that lead from one port to another with little deformation: how easy the bridge will be.
 pub(super) fn easy_closings(library: &Library, from: Port, to: Port) -> usize {
+    easy(library, from, to).count()
+}
+
+/// True if at least `wanted` strands do.
+pub(super) fn has_easy_closings(library: &Library, from: Port, to: Port, wanted: usize) -> bool {
+    easy(library, from, to).take(wanted).count() == wanted
+}
+
+fn easy<'a>(library: &'a Library, from: Port, to: Port) -> impl Iterator<Item = &'a Span> {
     let (left, way) = (to.tick - from.tick, from.at.inverse().then(to.at));
-    let closings = &library.closings[from.group as usize * library.set.groups.len() + to.group as usize];
-    closings.spans.iter().filter(|span| span.leads(way, left, EASY_REACH, EASY_TURN)).count()
+    let closings = library.closings_between(from.group, to.group);
+    let farthest = TOP_SPEED * left as f32 / FPS + SLACK;
+    let spans = if way.position.length_squared() > farthest * farthest { &[] } else { closings.spans.as_slice() };
+    spans.iter().filter(move |span| span.leads(way, left, EASY_REACH, EASY_TURN))
 }
 
 /// Cuts a deformed strand into the pieces of its roles, sharing out the ticks in proportion to the sources'; `None` if
@@ -362,8 +403,11 @@ fn cost_left(at: &Port, goal: Goal) -> Option<f32> {
     }
 }
 
-fn key(p: &Port) -> (i32, i32, i32, i32, u32) {
-    let heading = (wrap_angle(p.at.heading).to_degrees() / 20.0).round() as i32;
-    let (x, z) = (p.at.position.x / 0.25, p.at.position.y / 0.25);
-    (x.round() as i32, z.round() as i32, heading, p.tick.div_euclid(5), p.group)
+/// States of one key are as good as the same: 25 cm, 20 degrees, 5 ticks.
+fn key(p: &Port) -> u64 {
+    let heading = (wrap_angle(p.at.heading).to_degrees() / 20.0).round() as i64 as u64;
+    let cell = (p.at.position * 4.0).round();
+    let field = |value: i64, bits: u32| value as u64 & ((1 << bits) - 1);
+    let place = field(cell.x as i64, 18) << 18 | field(cell.y as i64, 18);
+    (place << 28) | (heading & 0x1f) << 23 | field(p.tick.div_euclid(5) as i64, 15) << 8 | u64::from(p.group)
 }

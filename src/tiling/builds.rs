@@ -14,8 +14,9 @@ use rayon::prelude::*;
 
 use super::bake::{Chains, segments_of};
 use super::boxes::depth_in;
+use super::domain::Spot;
 use super::faults::is_rushed;
-use super::figure::{Figure, REACH, TOLERANCE, frame_at};
+use super::figure::{Figure, REACH, TOLERANCE, frame_at, pairs_at};
 use crate::geom::Cuboid;
 use crate::motion::{Build, canonical};
 use crate::refine::{Body, Hold, Segment, fit, holds};
@@ -86,11 +87,15 @@ impl<'a> Fitting<'a> {
 
     fn is_sound(&self, person: usize, body: &Body, build: &Build) -> bool {
         let Chains { library, domain, .. } = self.chains;
-        let near = |f: &usize| !domain.holds(Vec2::new(body.root[*f].x, body.root[*f].z), REACH);
-        let figure = |f: usize| Figure::of(body, &build.skeleton, (body.begin as usize + f) as i32);
+        let spot = |f: usize| Spot::ground(body.begin as i32 + f as i32);
+        let near = |f: &usize| !domain.holds(spot(*f), Vec2::new(body.root[*f].x, body.root[*f].z), REACH);
+        let figure = |f: usize| Some((f, Figure::of(body, &build.skeleton, (body.begin as usize + f) as i32)?));
         body.strained.len() <= self.bodies[person].strained.len()
             && !(0..body.root.len()).any(|f| is_rushed(body, library, f, RUSH))
-            && !(0..body.root.len()).filter(near).filter_map(figure).any(|figure| figure.is_in_wall(domain))
+            && !(0..body.root.len())
+                .filter(near)
+                .filter_map(figure)
+                .any(|(f, figure)| figure.is_in_wall(domain, spot(f).tick))
     }
 
     /// Those who change give way one step further.
@@ -124,17 +129,13 @@ impl<'a> Fitting<'a> {
     /// All pairs, one or both of them changed, whose fitted bodies are in each other where the canonical ones are not.
     fn clashes(&self, changed: &[bool]) -> Vec<(usize, usize)> {
         let at_tick = |tick: i32| -> Vec<(usize, usize)> {
-            let mut figures: Vec<(usize, Figure)> =
-                (0..self.worn.len()).filter_map(|p| Some((p, self.figure(p, tick)?))).collect();
-            figures.sort_by(|a, b| a.1.left().total_cmp(&b.1.left()).then(a.0.cmp(&b.0)));
             let mut pairs = Vec::new();
-            for (i, (p, a)) in figures.iter().enumerate() {
-                for (q, b) in figures[i + 1..].iter().take_while(|(_, b)| b.left() < a.center.x + a.radius) {
-                    if (changed[*p] || changed[*q]) && self.is_clash((*p, a), (*q, b), tick) {
-                        pairs.push((*p.min(q), *p.max(q)));
-                    }
+            let bodies = self.worn.iter().map(|w| &w.body);
+            pairs_at(tick, bodies, changed, |p| self.figure(p, tick), |(p, a), (q, b)| {
+                if self.is_clash((p, a), (q, b), tick) {
+                    pairs.push((p.min(q), p.max(q)));
                 }
-            }
+            });
             pairs
         };
         let horizon = self.chains.domain.horizon;

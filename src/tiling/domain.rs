@@ -3,13 +3,30 @@
 use glam::Vec2;
 
 use super::Scene;
-use crate::geom::Polygon;
+use crate::geom::{Obstacle, Polygon, Turn};
+use crate::motion::FPS;
 use crate::{Error, Result};
 
 /// Cell size of the clearance grid in metres.
 const CELL: f32 = 0.1;
 /// A body needs at least this much room to stand, metres.
 const BODY_ROOM: f32 = 0.3;
+
+/// When a part of a body is somewhere, and how high it is above the ground at its lowest.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    /// When.
+    pub tick: i32,
+    /// Metres.
+    pub lift: f32,
+}
+
+impl Spot {
+    /// On the ground.
+    pub fn ground(tick: i32) -> Self {
+        Self { tick, lift: 0.0 }
+    }
+}
 
 /// Region, obstacles and time span of a scene.
 pub(super) struct Domain {
@@ -20,7 +37,8 @@ pub(super) struct Domain {
     /// Bodies are looked at on ticks 0..horizon.
     pub horizon: i32,
     region: Polygon,
-    obstacles: Vec<Polygon>,
+    walls: Vec<Polygon>,
+    movers: Vec<Mover>,
     clearance: Vec<f32>,
     columns: usize,
     rows: usize,
@@ -45,7 +63,13 @@ impl Domain {
             max,
             horizon: scene.last_frame() + 1,
             region: scene.region.clone(),
-            obstacles: scene.obstacles.clone(),
+            walls: scene.obstacles.iter().filter(|o| o.is_wall()).map(|o| o.outline.clone()).collect(),
+            movers: scene
+                .obstacles
+                .iter()
+                .filter(|o| !o.is_wall())
+                .map(|o| Mover::new(o, scene.last_frame()))
+                .collect(),
             clearance: Vec::new(),
             columns,
             rows,
@@ -60,15 +84,20 @@ impl Domain {
         Ok(domain)
     }
 
-    /// Distance to the nearest wall or obstacle; negative beyond.
+    /// Distance to the nearest wall or obstacle that stands and is over all heads; negative beyond.
     pub fn exact_clearance(&self, p: Vec2) -> f32 {
         let inside = -self.region.signed_distance(p);
-        self.obstacles.iter().map(|o| o.signed_distance(p)).fold(inside, f32::min)
+        self.walls.iter().map(|o| o.signed_distance(p)).fold(inside, f32::min)
     }
 
-    /// True if a disc certainly lies inside the region and outside the obstacles.
+    /// True if a disc certainly lies inside the region and outside the obstacles, or above them.
     #[inline]
-    pub fn holds(&self, center: Vec2, radius: f32) -> bool {
+    pub fn holds(&self, at: Spot, center: Vec2, radius: f32) -> bool {
+        self.is_within_walls(center, radius) && self.movers.iter().all(|m| m.is_clear(at, center, radius))
+    }
+
+    #[inline]
+    fn is_within_walls(&self, center: Vec2, radius: f32) -> bool {
         // The nearest node; casts round towards zero.
         let cell = (center - self.min) / CELL + 0.5;
         if cell.x < 0.0 || cell.y < 0.0 || cell.x >= self.columns as f32 || cell.y >= self.rows as f32 {
@@ -83,28 +112,99 @@ impl Domain {
     }
 }
 
+/// An obstacle that moves or that one can get over, and where it is at every tick.
+struct Mover {
+    outline: Polygon,
+    height: f32,
+    /// The circle around the outline.
+    middle: Vec2,
+    radius: f32,
+    /// Where the circle's middle is, and how it is turned; one for all ticks if it stands.
+    places: Vec<(Vec2, Turn)>,
+}
+
+impl Mover {
+    fn new(obstacle: &Obstacle, last_tick: i32) -> Self {
+        let outline = obstacle.outline.clone();
+        let (low, high) = outline.bounds();
+        let middle = (low + high) * 0.5;
+        let place = |tick: i32| {
+            let place = obstacle.place(tick as f32 / FPS);
+            (place.apply(middle), place.turn())
+        };
+        let ticks = if obstacle.path.is_empty() { 0..=0 } else { 0..=last_tick };
+        Self {
+            height: obstacle.height.unwrap_or(f32::INFINITY),
+            radius: outline.points.iter().map(|p| p.distance(middle)).fold(0.0, f32::max),
+            places: ticks.map(place).collect(),
+            middle,
+            outline,
+        }
+    }
+
+    fn is_clear(&self, at: Spot, center: Vec2, radius: f32) -> bool {
+        if at.lift >= self.height {
+            return true;
+        }
+        let (place, turn) = self.places[(at.tick.max(0) as usize).min(self.places.len() - 1)];
+        let (away, reach) = (center - place, self.radius + radius);
+        if away.length_squared() >= reach * reach {
+            return true;
+        }
+        let back = Turn { cos: turn.cos, sin: -turn.sin };
+        self.outline.signed_distance(self.middle + back.apply(away)) >= radius
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::Waypoint;
 
     #[test]
     fn holds_agrees_with_exact_clearance() {
         let mut scene = Scene::demo();
-        scene.obstacles.push(Polygon::rectangle(Vec2::splat(4.0), Vec2::splat(6.0)));
+        scene.obstacles.push(Polygon::rectangle(Vec2::splat(4.0), Vec2::splat(6.0)).into());
         let domain = Domain::new(&scene).unwrap();
         for i in 0..4000 {
             let p = Vec2::new((i % 63) as f32 * 0.2, (i / 63) as f32 * 0.2) - 0.3;
             let c = domain.exact_clearance(p);
             // No body has a negative radius.
-            assert!(domain.holds(p, c - 1e-3) || c < 1e-3, "{p} {c}");
-            assert!(!domain.holds(p, c + 1e-3));
+            assert!(domain.holds(Spot::ground(0), p, c - 1e-3) || c < 1e-3, "{p} {c}");
+            assert!(!domain.holds(Spot::ground(0), p, c + 1e-3));
         }
     }
 
     #[test]
     fn obstacles_that_fill_the_region_are_refused() {
         let mut scene = Scene::demo();
-        scene.obstacles.push(Polygon::rectangle(Vec2::splat(-1.0), Vec2::splat(13.0)));
+        scene.obstacles.push(Polygon::rectangle(Vec2::splat(-1.0), Vec2::splat(13.0)).into());
         assert!(Domain::new(&scene).err().unwrap().to_string().contains("room"));
+    }
+
+    #[test]
+    fn a_moving_obstacle_is_where_it_is_and_only_so_high() {
+        let mut scene = Scene::demo();
+        let at = |secs: f32, x: f32, heading: f32| Waypoint { secs, position: Vec2::new(x, 6.0), heading };
+        // Its outline is not about its way-points, so that it swings about when it turns.
+        let outline = Polygon::rectangle(Vec2::new(0.2, 0.1), Vec2::new(1.4, 0.7));
+        let path = vec![at(2.0, 2.0, 0.0), at(10.0, 10.0, 3.0)];
+        scene.obstacles.push(Obstacle { outline, height: Some(0.4), path });
+        let (domain, cart) = (Domain::new(&scene).unwrap(), &scene.obstacles[0]);
+        let mut met = 0;
+        for i in 0..20_000 {
+            let tick = i % 600;
+            let p = Vec2::new((i * 7 % 113) as f32 * 0.1, 4.0 + (i * 13 % 41) as f32 * 0.1);
+            let distance = cart.outline_at(tick as f32 / FPS).signed_distance(p);
+            let inside = domain.exact_clearance(p);
+            let radius = 0.2;
+            let free = distance >= radius && inside >= radius;
+            met += (distance < radius) as usize;
+            if (distance - radius).abs() > 1e-3 && (inside - radius).abs() > 1e-3 {
+                assert_eq!(domain.holds(Spot::ground(tick), p, radius), free, "{p} at {tick}: {distance}");
+            }
+            assert_eq!(domain.holds(Spot { tick, lift: 0.41 }, p, radius), domain.is_within_walls(p, radius));
+        }
+        assert!(met > 500, "{met}");
     }
 }

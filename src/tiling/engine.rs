@@ -1,47 +1,56 @@
 //! The engine: a tiling that is perfect after every step.
 //!
-//! Seed adds one person at a time, led over the whole time by single-person patches. Enrich puts patches of several
-//! people where people pass near each other and bridges the ripped tracks again. Mend tests the final bodies. All
-//! three use one mechanism: rip up a window of a track and bridge it (recipe and reasons: ARCHITECTURE.md).
+//! Gather puts in people who meet, while there is room. Seed adds people who walk alone. Enrich puts further patches of
+//! several people where people pass near each other and bridges the ripped tracks again. Mend tests the final bodies.
+//! All four propose whole changes that a [`Crew`] works out side by side (recipe and reasons: ARCHITECTURE.md).
 
 use std::time::{Duration, Instant};
 
-use rand::{RngExt, SeedableRng};
+use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::bake::{Chains, bake};
 use super::bridge::Taste;
+use super::crew::Crew;
 use super::domain::Domain;
+use super::draft::Draft;
 use super::enrich::enrich;
-use super::faults::faults;
+use super::gather::{Encores, Wish, gather};
+use super::plan::Plan;
 use super::library::Library;
-use super::mend::{dissolve, mend, perform};
+use super::mend::{dissolve, mend};
 use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
+use super::rehearsal::Rehearsal;
 use super::seed::seed_person;
-use super::tracks::{Tracks, Undo, Window};
+use super::tracks::{Tracks, Window};
 use super::{Scene, paper};
 use crate::patch::PatchSet;
-use crate::refine::Performance;
 use crate::{Error, Result};
 
+/// Failed gatherings in a row after which people come alone.
+const GATHER_PATIENCE: usize = 80;
+/// States expanded to lead people to and from where they meet.
+const GATHER_EXPANSIONS: usize = 300;
+/// Where those to come would have to be together for more than this share of their time, no more are gathered.
+const HOPELESS: f32 = 0.7;
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 4000;
 /// Every so many people one is wished for who begins with a box in the hands, for so many tries.
 const LADEN_EVERY: usize = 20;
 const LADEN_PATIENCE: usize = 60;
 const LADEN_EXPANSIONS: usize = 300;
-/// Failed tries in a row after which no further patch of several people is wished for.
-const ENRICH_PATIENCE: usize = 90_000;
-/// Failures in a row after which people are led other ways.
-const STIR_AFTER: usize = 15_000;
+/// Failed tries per person in a row after which no further patch of several people is wished for: before all people are
+/// there, and at the end.
+const FIRST_PATIENCE: usize = 40;
+const ENRICH_PATIENCE: usize = 80;
+/// Failures per person in a row after which people are led other ways.
+const STIR_AFTER: usize = 14;
 /// Ticks before and after a piece that are then bridged anew.
 const STIR_TICKS: i32 = 45;
 /// The share is aimed at a little higher than wished for: mending may cost a patch or two.
 const ABOVE_WISH: f32 = 1.04;
-/// Largest share of the people's time in patches of several people that early rounds aim at.
-const BUSIEST: f32 = 0.7;
 /// Tries per person in the sweep through time, and how far ahead of it patches are put, ticks.
-const SWEEP_TRIES: usize = 1000;
+const SWEEP_TRIES: usize = 60;
 const SWEEP_TICKS: i32 = 30;
 /// Rounds after which patches of several people are given up for a fault.
 const GENTLE_ROUNDS: usize = 6;
@@ -148,24 +157,25 @@ fn engine(
     options: &Options,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Outcome {
-    let mut clock = Clock::new(options.time_secs, progress);
-    let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
+    let clock = Clock::new(options.time_secs, progress);
     let library = Library::new(set, scene.limits);
-    let mut tracks = Tracks::new(&library, domain);
+    let crew = Crew::new(Tracks::new(&library, domain), scene.region.area(), options.seed);
     let taste = Taste { calm: calm(scene), expansions: 60 };
-
-    // Patches of several people need room: they go in while the place is half empty, enough of them for all to come.
-    for part in [3, 2, 1] {
-        let people = scene.characters.div_ceil(part);
-        seed(&mut tracks, people, taste, &mut clock, &mut rng);
-        let wish = scene.interaction * ABOVE_WISH;
-        let share = (wish * (scene.characters as f32 / people as f32)).min(BUSIEST);
-        enrich_to(&mut tracks, share, taste, &mut clock, &mut rng);
-    }
-    let (played, left) = finish(&mut tracks, scene.interaction, taste, &mut clock, &mut rng);
-    let status = status(tracks.chains(), scene, left);
-    let crowd = bake(tracks.chains(), scene, options.seed, played);
-    Outcome { crowd, status, danglings: 0, interpenetrations: left, solve_secs: clock.secs() }
+    let mut engine = Engine { scene, crew, taste, clock };
+    engine.gather();
+    engine.tell("gather");
+    engine.enrich(FIRST_PATIENCE);
+    engine.tell("enrich");
+    engine.seed();
+    engine.tell("seed");
+    engine.enrich(ENRICH_PATIENCE);
+    engine.tell("enrich");
+    let Rehearsal { played, faults, .. } = engine.finish();
+    engine.tell("finish");
+    let Engine { crew, clock, .. } = engine;
+    let status = status(crew.tracks.chains(), scene, faults.len());
+    let crowd = bake(crew.tracks.chains(), scene, options.seed, played);
+    Outcome { crowd, status, danglings: 0, interpenetrations: faults.len(), solve_secs: clock.secs() }
 }
 
 /// The denser the crowd, the more people rather stand than walk.
@@ -187,107 +197,159 @@ fn state(tracks: &Tracks, phase: Phase) -> Progress {
     }
 }
 
-fn seed(tracks: &mut Tracks, wish: usize, taste: Taste, clock: &mut Clock, rng: &mut ChaCha8Rng) {
-    let mut failures = 0;
-    let boxes = tracks.library.laden.contains(&true);
-    while tracks.tracks.len() < wish && failures < SEED_PATIENCE && clock.goes_on(|| state(tracks, Phase::Seed)) {
-        let laden = boxes && tracks.tracks.len().is_multiple_of(LADEN_EVERY) && failures < LADEN_PATIENCE;
-        // Fewer patches go on with a box in the hands: the search needs longer.
-        let taste = if laden { Taste { expansions: LADEN_EXPANSIONS, ..taste } } else { taste };
-        failures = if seed_person(tracks, laden, taste, rng) { 0 } else { failures + 1 };
-    }
+/// A run.
+struct Engine<'a> {
+    scene: &'a Scene,
+    crew: Crew<'a>,
+    taste: Taste,
+    clock: Clock<'a>,
 }
 
-/// Adds patches of several people until their share of the people's time is `wish`: once through time from its
-/// beginning, when what comes after is free, then wherever there is room.
-fn enrich_to(tracks: &mut Tracks, wish: f32, taste: Taste, clock: &mut Clock, rng: &mut ChaCha8Rng) {
-    let kinds = tracks.library.multi.clone();
-    if kinds.is_empty() || tracks.tracks.is_empty() {
-        return;
+impl Engine<'_> {
+    fn tell(&self, what: &str) { if std::env::var("V").is_ok() { let t = &self.crew.tracks; eprintln!("{:.2} {what}: {} people, {:.3} of {:.3}", self.clock.secs(), t.tracks.len(), t.company() as f32, self.company_wish()); } }
+
+    fn goes_on(&mut self, phase: Phase) -> bool {
+        let tracks = &self.crew.tracks;
+        self.clock.goes_on(|| state(tracks, phase))
     }
-    let last = tracks.domain.horizon - 15;
-    let mut share = tracks.multi_person_share();
-    let tries = SWEEP_TRIES * tracks.tracks.len();
-    let sweep = (0..tries).map(|i| {
-        let tick = (i * last as usize / tries) as i32;
-        tick..(tick + SWEEP_TICKS).min(last)
-    });
-    let mut failures = 0;
-    for ticks in sweep.chain(std::iter::repeat(0..last)) {
-        if share >= wish || failures > ENRICH_PATIENCE || !clock.goes_on(|| state(tracks, Phase::Enrich)) {
+
+    /// Ticks in patches of several people that are aimed at.
+    fn company_wish(&self) -> usize {
+        let ticks = self.scene.characters * self.crew.tracks.domain.horizon as usize;
+        (self.scene.interaction * ABOVE_WISH * ticks as f32) as usize
+    }
+
+    fn people_left(&self) -> usize {
+        self.scene.characters.saturating_sub(self.crew.tracks.tracks.len())
+    }
+
+    /// Adds people who meet until there is as much company as wished for.
+    fn gather(&mut self) {
+        let library = self.crew.tracks.library;
+        let (wish, most) = (self.company_wish(), self.scene.characters);
+        if library.multi.is_empty() || wish == 0 {
             return;
         }
-        let kind = kinds[rng.random_range(0..kinds.len())];
-        if enrich(tracks, kind, ticks, taste, rng) {
-            failures = 0;
-            share = tracks.multi_person_share();
-        } else {
-            failures += 1;
-            if failures.is_multiple_of(STIR_AFTER) {
-                stir(tracks, taste, rng);
+        let encores = Encores::new(library);
+        let mut plan = Plan::new(library, &encores, self.crew.tracks.domain.horizon, self.crew.seed);
+        let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
+        let mut failures = 0;
+        while self.crew.tracks.company() < wish && failures < GATHER_PATIENCE && self.goes_on(Phase::Seed) {
+            let (left, tracks) = (self.people_left(), &self.crew.tracks);
+            let need = wish.saturating_sub(tracks.company()) as f32 / (left * tracks.domain.horizon as usize) as f32;
+            if left < 2 || need > HOPELESS {
+                break;
+            }
+            let wishes: Vec<Wish> = (0..self.crew.batch.min(left.div_ceil(2))).map(|_| plan.draw(need)).collect();
+            let made = self.crew.work(
+                wishes.len(),
+                |i, draft, rng| gather(draft, &encores, wishes[i], taste, rng),
+                |tracks, change| tracks.tracks.len() + change.newcomers() <= most && tracks.company() < wish,
+            );
+            plan.learn(&wishes, &made);
+            failures = if made.contains(&true) { 0 } else { failures + made.len() };
+        }
+    }
+
+    /// Adds people who come alone until there are as many as wished for.
+    fn seed(&mut self) {
+        let most = self.scene.characters;
+        let boxes = self.crew.tracks.library.laden.contains(&true);
+        let mut failures = 0;
+        while self.people_left() > 0 && failures < SEED_PATIENCE && self.goes_on(Phase::Seed) {
+            let laden = boxes && self.people_left().is_multiple_of(LADEN_EVERY) && failures < LADEN_PATIENCE;
+            let count = if laden { 1 } else { self.crew.batch.min(self.people_left()) };
+            // Fewer patches go on with a box in the hands: the search needs longer.
+            let taste = if laden { Taste { expansions: LADEN_EXPANSIONS, ..self.taste } } else { self.taste };
+            let made = self.crew.work(
+                count,
+                |_, draft, rng| seed_person(draft, laden, taste, rng),
+                |tracks, _| tracks.tracks.len() < most,
+            );
+            failures = if made.contains(&true) { 0 } else { failures + count };
+        }
+    }
+
+    /// Adds patches of several people until there is as much company as wished for: once through time from its
+    /// beginning, when what comes after is free, then wherever there is room.
+    fn enrich(&mut self, patience: usize) {
+        let (people, last) = (self.crew.tracks.tracks.len(), self.crew.tracks.domain.horizon - SWEEP_TICKS / 2);
+        if self.crew.tracks.library.multi.is_empty() || people == 0 {
+            return;
+        }
+        let (wish, tries, taste) = (self.company_wish(), SWEEP_TRIES * people, self.taste);
+        let (mut done, mut failures, mut since_stir) = (0, 0, 0);
+        while self.crew.tracks.company() < wish && failures < patience * people && self.goes_on(Phase::Enrich) {
+            let ticks = |i: usize| match (done + i) * last as usize / tries {
+                tick if tick < last as usize => tick as i32..(tick as i32 + SWEEP_TICKS).min(last),
+                _ => 0..last,
+            };
+            let count = self.crew.batch;
+            let made = self.crew.work(
+                count,
+                |i, draft, rng| enrich(draft, ticks(i), taste, rng),
+                |tracks, _| tracks.company() < wish,
+            );
+            done += count;
+            (failures, since_stir) = if made.contains(&true) { (0, 0) } else { (failures + count, since_stir + count) };
+            if since_stir > STIR_AFTER * people {
+                since_stir = 0;
+                self.crew.work(people, |track, draft, rng| stir(draft, track, taste, rng), |_, _| true);
             }
         }
     }
-}
 
-/// Leads everybody another way for some seconds, where there is one: new neighbours meet.
-fn stir(tracks: &mut Tracks, taste: Taste, rng: &mut ChaCha8Rng) {
-    for track in 0..tracks.tracks.len() {
-        let from = rng.random_range(0..tracks.tracks[track].len());
-        if tracks.people_of(tracks.tracks[track][from]) > 1 {
-            continue;
-        }
-        let mut undo = Undo::default();
-        let window = tracks.widen(Window { track, from, to: from + 1 }, STIR_TICKS);
-        tracks.hide_window(window, &mut undo);
-        match tracks.bridge_window(window, taste, rng, &mut undo) {
-            Some(()) => tracks.commit(undo),
-            None => tracks.roll_back(undo),
-        }
-    }
-}
-
-/// Mends, and where that cost more patches of several people than it may, puts new ones in and mends again; the
-/// performance and the number of faults left.
-fn finish(
-    tracks: &mut Tracks,
-    wish: f32,
-    taste: Taste,
-    clock: &mut Clock,
-    rng: &mut ChaCha8Rng,
-) -> (Performance, usize) {
-    let mut found = mend_all(tracks, taste, clock, rng);
-    for _ in 0..REFILLS {
-        let share = tracks.multi_person_share();
-        if share >= wish || found.1 > 0 {
-            break;
-        }
-        enrich_to(tracks, wish * ABOVE_WISH, taste, clock, rng);
-        if tracks.multi_person_share() <= share {
-            break;
-        }
-        found = mend_all(tracks, taste, clock, rng);
-    }
-    found
-}
-
-/// Tests final bodies and bridges anew until none interpenetrate; the performance and the number of faults left.
-fn mend_all(tracks: &mut Tracks, taste: Taste, clock: &mut Clock, rng: &mut ChaCha8Rng) -> (Performance, usize) {
-    let mut round = 0;
-    loop {
-        let played = perform(tracks.chains());
-        let faults = faults(tracks.chains(), &played);
-        round += 1;
-        if faults.is_empty() || round > MEND_ROUNDS || !clock.goes_on(|| state(tracks, Phase::Mend)) {
-            return (played, faults.len());
-        }
-        let taste = Taste { expansions: MEND_EXPANSIONS, ..taste };
-        for fault in faults {
-            if round < GENTLE_ROUNDS || !dissolve(tracks, fault, taste, rng) {
-                mend(tracks, fault, taste, rng);
+    /// Mends, and where that cost more patches of several people than it may, puts new ones in and mends again.
+    fn finish(&mut self) -> Rehearsal {
+        let mut rehearsal = Rehearsal::new(&self.crew.tracks);
+        self.tell(&format!("rehearsed {}", rehearsal.faults.len()));
+        self.mend(&mut rehearsal);
+        for _ in 0..REFILLS {
+            let share = self.crew.tracks.multi_person_share();
+            if share >= self.scene.interaction || !rehearsal.faults.is_empty() {
+                break;
+            }
+            // People may have been led other ways even if no patch found room.
+            self.enrich(ENRICH_PATIENCE);
+            rehearsal.repeat(&self.crew.tracks);
+            self.mend(&mut rehearsal);
+            if self.crew.tracks.multi_person_share() <= share {
+                break;
             }
         }
+        rehearsal
     }
+
+    /// Bridges anew where final bodies are at fault, until none are.
+    fn mend(&mut self, rehearsal: &mut Rehearsal) {
+        let taste = Taste { expansions: MEND_EXPANSIONS, ..self.taste };
+        for round in 0..MEND_ROUNDS {
+            let faults = &rehearsal.faults;
+            if faults.is_empty() || !self.goes_on(Phase::Mend) {
+                return;
+            }
+            let gentle = round < GENTLE_ROUNDS;
+            let propose = |i: usize, draft: &mut Draft, rng: &mut ChaCha8Rng| match gentle {
+                true => mend(draft, faults[i], taste, rng),
+                false => dissolve(draft, faults[i], taste, rng).or_else(|| mend(draft, faults[i], taste, rng)),
+            };
+            self.crew.work(faults.len(), propose, |_, _| true);
+            rehearsal.repeat(&self.crew.tracks);
+            self.tell(&format!("mended to {}", rehearsal.faults.len()));
+        }
+    }
+}
+
+/// Leads somebody another way for some seconds: new neighbours meet.
+fn stir(draft: &mut Draft, track: usize, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+    let tracks = draft.base;
+    let from = rng.random_range(0..tracks.tracks[track].len());
+    if tracks.people_of(tracks.tracks[track][from]) > 1 {
+        return None;
+    }
+    let window = tracks.widen(Window { track, from, to: from + 1 }, STIR_TICKS);
+    draft.hide(window);
+    draft.bridge_window(window, taste, rng)
 }
 
 fn status(chains: Chains, scene: &Scene, faults: usize) -> Status {

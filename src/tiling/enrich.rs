@@ -8,13 +8,18 @@ use glam::Vec2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::bridge::{Goal, Port, Taste, easy_closings};
+use super::bridge::{Goal, NO_INSTANCE, Port, Taste, easy_closings};
+use super::domain::Spot;
+use super::draft::Draft;
 use super::library::Role;
-use super::occupancy::{Piece, PieceId};
-use super::tracks::{TrackId, Tracks, Undo, Window};
+use super::occupancy::PieceId;
+use super::piece::{Company, Piece};
+use super::tracks::{TrackId, Tracks, Window};
 use crate::geom::Ground;
 use crate::motion::FPS;
 
+/// Kinds, places and times tried until one has all its players.
+const CASTS: usize = 60;
 /// How far from an entry its future player may be, metres.
 const CAST_RADIUS: f32 = 2.6;
 /// How long before an entry players are looked for, ticks.
@@ -46,17 +51,12 @@ struct Part {
     keep_after: usize,
 }
 
-/// Tries to put one instance of `kind` into the tiling, somebody's entry being in `ticks`.
-pub(super) fn enrich(tracks: &mut Tracks, kind: u32, ticks: Range<i32>, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
-    let Some(parts) = cast(tracks, kind, ticks, rng) else { return false };
-    let mut undo = Undo::default();
-    if perform(tracks, &parts, taste, rng, &mut undo).is_some() {
-        tracks.commit(undo);
-        true
-    } else {
-        tracks.roll_back(undo);
-        false
-    }
+/// Puts an instance of some kind into the tiling, somebody's entry being in `ticks`.
+pub(super) fn enrich(draft: &mut Draft, ticks: Range<i32>, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+    let kinds = &draft.base.library.multi;
+    let mut draw = || cast(draft.base, kinds[rng.random_range(0..kinds.len())], ticks.clone(), rng);
+    let parts = (0..CASTS).find_map(|_| draw())?;
+    perform(draft, &parts, taste, rng)
 }
 
 /// Chooses place, time and players: somebody's way leads through one of the entries, others are near the rest.
@@ -77,8 +77,10 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
     let mut parts: Vec<Part> = Vec::with_capacity(roles.len());
     let mut near = Vec::new();
     for role in roles {
-        let (mut entry, exit) = ports(tracks, role, world_from_patch, clock);
-        let room = |p: &Port| p.tick < 0 || p.tick > horizon || tracks.domain.holds(p.at.position, WALL_ROOM);
+        let (mut entry, exit) = library.ports(role, world_from_patch, clock);
+        let room = |p: &Port| {
+            p.tick < 0 || p.tick > horizon || tracks.domain.holds(Spot::ground(p.tick), p.at.position, WALL_ROOM)
+        };
         if !room(&entry) || !room(&exit) {
             return None;
         }
@@ -140,14 +142,7 @@ fn heir(tracks: &Tracks, role: u32, exit: Port, world_from_patch: Ground, clock:
         let other = &library.roles[r as usize];
         laden(other.entry_group) != entry && laden(other.exit_group) == entry
     };
-    others.find(swaps).map_or(exit, |r| ports(tracks, r, world_from_patch, clock).1)
-}
-
-fn ports(tracks: &Tracks, role: u32, world_from_patch: Ground, clock: i32) -> (Port, Port) {
-    let r = &tracks.library.roles[role as usize];
-    let entry = Port { at: world_from_patch.then(r.entry), tick: clock + r.begin, group: r.entry_group };
-    let exit = Port { at: entry.at.then(r.exit), tick: entry.tick + r.ticks, group: r.exit_group };
-    (entry, exit)
+    others.find(swaps).map_or(exit, |r| library.ports(r, world_from_patch, clock).1)
 }
 
 /// One of those who can be at `entry` in time and go on from `exit`: person, first and one past the last piece to rip.
@@ -226,56 +221,37 @@ fn no_patch_between(tracks: &Tracks, track: TrackId, begin: i32, end: i32) -> bo
     })
 }
 
-fn perform(tracks: &mut Tracks, parts: &[Part], taste: Taste, rng: &mut ChaCha8Rng, undo: &mut Undo) -> Option<()> {
+fn perform(draft: &mut Draft, parts: &[Part], taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     for part in parts {
-        for i in part.keep_before..part.keep_after {
-            tracks.hide(tracks.tracks[part.track][i], undo);
-        }
+        draft.hide(Window { track: part.track, from: part.keep_before, to: part.keep_after });
     }
-    let instance = tracks.new_instance();
-    let pieces: Vec<Piece> = parts
-        .iter()
-        .map(|p| Piece::rigid(tracks.library, tracks.domain, p.role, instance, p.entry.at, p.entry.tick))
-        .collect();
-    let bystanders = step_aside(tracks, parts, &pieces, undo)?;
-    let mut placed = Vec::with_capacity(pieces.len());
-    for piece in pieces {
-        // Asked again now that the first of them are in: a cell holds so many people and no more.
-        if !tracks.is_free(&piece) {
-            return None;
-        }
-        placed.push(tracks.add(piece, undo));
-    }
+    let tracks = draft.base;
+    let bystanders = step_aside(draft, parts)?;
+    let placed = draft.add_patch(parts.iter().map(|p| (p.role, p.entry)))?;
     let futures = futures(tracks, parts);
-    let mut ways = Vec::with_capacity(parts.len());
     for (i, part) in parts.iter().enumerate() {
-        let mut way = lead_in(tracks, part, taste, rng, undo)?;
+        let future = &parts[futures[i]];
+        let mut way = tracks.tracks[part.track][..part.keep_before].to_vec();
+        let here = draft.piece(placed[i]).instance;
+        let from = tracks.company_before(part.track, part.keep_before);
+        way.extend(lead_in(draft, part, Company { from, to: here }, taste, rng)?);
         way.push(placed[i]);
-        way.extend(lead_out(tracks, part, &parts[futures[i]], taste, rng, undo)?);
-        ways.push(way);
+        let to = tracks.company_after(future.track, future.keep_after);
+        way.extend(lead_out(draft, part, future, Company { from: here, to }, taste, rng)?);
+        way.extend(&tracks.tracks[future.track][future.keep_after..]);
+        draft.set_track(part.track, way);
     }
-    let new_tracks: Vec<Vec<PieceId>> = parts
-        .iter()
-        .zip(ways)
-        .zip(&futures)
-        .map(|((part, way), &future)| {
-            let before = &tracks.tracks[part.track][..part.keep_before];
-            let after = &tracks.tracks[parts[future].track][parts[future].keep_after..];
-            [before, &way, after].concat()
-        })
-        .collect();
-    for (part, pieces) in parts.iter().zip(new_tracks) {
-        tracks.set_track(part.track, pieces, undo);
-    }
-    bystanders.into_iter().try_for_each(|window| tracks.bridge_window(window, taste, rng, undo))
+    bystanders.into_iter().try_for_each(|window| draft.bridge_window(window, taste, rng))
 }
 
-/// Takes out the windows of the tracks that are in the way of `pieces`; `None` if that are too many, or patches of
+/// Takes out the windows of the tracks that are in the way of the parts; `None` if that are too many, or patches of
 /// several people, or walls.
-fn step_aside(tracks: &mut Tracks, parts: &[Part], pieces: &[Piece], undo: &mut Undo) -> Option<Vec<Window>> {
+fn step_aside(draft: &mut Draft, parts: &[Part]) -> Option<Vec<Window>> {
+    let tracks = draft.base;
     let mut windows: Vec<Window> = Vec::new();
-    for piece in pieces {
-        for id in tracks.occupancy.blockers(tracks.library, tracks.domain, piece)? {
+    for part in parts {
+        let piece = Piece::rigid(tracks.library, tracks.domain, part.role, NO_INSTANCE, part.entry.at, part.entry.tick);
+        for id in draft.view().blockers(&piece)? {
             let track = tracks.owner(id);
             let index = tracks.index_at(track, tracks.piece(id).begin);
             if tracks.people_of(id) > 1 || parts.iter().any(|p| p.track == track) {
@@ -298,7 +274,7 @@ fn step_aside(tracks: &mut Tracks, parts: &[Part], pieces: &[Piece], undo: &mut 
             return None;
         }
         *window = tracks.widen(*window, BYSTANDER_TICKS);
-        tracks.hide_window(*window, undo);
+        draft.hide(*window);
     }
     Some(windows)
 }
@@ -328,38 +304,35 @@ fn futures(tracks: &Tracks, parts: &[Part]) -> Vec<usize> {
 }
 
 fn lead_in(
-    tracks: &mut Tracks,
+    draft: &mut Draft,
     part: &Part,
+    company: Company,
     taste: Taste,
     rng: &mut ChaCha8Rng,
-    undo: &mut Undo,
 ) -> Option<Vec<PieceId>> {
-    let from = tracks.port(part.track, part.keep_before);
+    let from = draft.base.port(part.track, part.keep_before);
     if part.entry.tick <= 0 || from == part.entry {
         return Some(vec![]);
     }
-    let chain = if part.keep_before == 0 {
-        tracks.search(part.entry, Goal::Since(0), taste, rng)?
-    } else {
-        tracks.search(from, Goal::Port(part.entry), taste, rng)?
-    };
-    Some(tracks.add_chain(chain, undo))
+    match part.keep_before {
+        0 => draft.search(part.entry, Goal::Since(0), company, taste, rng),
+        _ => draft.search(from, Goal::Port(part.entry), company, taste, rng),
+    }
 }
 
 fn lead_out(
-    tracks: &mut Tracks,
+    draft: &mut Draft,
     part: &Part,
     future: &Part,
+    company: Company,
     taste: Taste,
     rng: &mut ChaCha8Rng,
-    undo: &mut Undo,
 ) -> Option<Vec<PieceId>> {
-    let horizon = tracks.domain.horizon;
+    let (tracks, horizon) = (draft.base, draft.base.domain.horizon);
     let open = future.keep_after == tracks.tracks[future.track].len();
     if open && part.exit.tick >= horizon {
         return Some(vec![]);
     }
     let goal = if open { Goal::Until(horizon) } else { Goal::Port(tracks.port(future.track, future.keep_after)) };
-    let chain = tracks.search(part.exit, goal, taste, rng)?;
-    Some(tracks.add_chain(chain, undo))
+    draft.search(part.exit, goal, company, taste, rng)
 }

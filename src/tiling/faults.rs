@@ -8,17 +8,15 @@ use rayon::prelude::*;
 
 use super::bake::Chains;
 use super::boxes::in_the_way;
-use super::domain::Domain;
-use super::figure::{Figure, REACH, TOLERANCE, frame_at};
+use super::domain::{Domain, Spot};
+use super::figure::{Figure, REACH, TOLERANCE, pairs_at};
 use super::library::Library;
-use super::occupancy::Piece;
+use super::piece::Piece;
 use super::tracks::TrackId;
 use crate::motion::{JOINT_COUNT, canonical};
 use crate::patch::turn_between;
 use crate::refine::{Body, Performance};
 
-/// Bodies whose hips are further apart than this never touch, metres.
-const TOUCHING_HIPS: f32 = 2.2;
 /// Joints may turn this much faster than in the captures.
 const RUSH: f32 = 1.15;
 
@@ -33,11 +31,13 @@ pub(super) struct Fault {
     pub tick: i32,
 }
 
-/// All faults of the final bodies, each at its first tick. O(ticks x people x neighbours), in parallel.
-pub(super) fn faults(chains: Chains, played: &Performance) -> Vec<Fault> {
+/// All faults of the final bodies in which somebody new has a part, each at its first tick. O(ticks x people x
+/// neighbours), in parallel.
+pub(super) fn faults(chains: Chains, played: &Performance, is_new: &[bool]) -> Vec<Fault> {
     let at_tick = |tick| {
         let mut pairs = in_the_way(chains, played, tick);
-        pairs.extend(touching(chains, &played.bodies, tick));
+        pairs.retain(|&(a, b)| is_new[a] || is_new[b]);
+        pairs.extend(touching(chains, &played.bodies, is_new, tick));
         pairs
     };
     let per_tick: Vec<Vec<(TrackId, TrackId)>> = (0..chains.domain.horizon).into_par_iter().map(at_tick).collect();
@@ -49,27 +49,30 @@ pub(super) fn faults(chains: Chains, played: &Performance) -> Vec<Fault> {
         open = now;
     }
     let alone = |(t, body): (TrackId, &Body)| {
-        let frame = first_unclean(body, chains, 0..body.root.len())?;
+        let frame = first_unclean(body, chains.library, chains.domain, 0..body.root.len())?;
         Some(Fault { a: t, b: t, tick: body.begin as i32 + frame as i32 })
     };
-    faults.par_extend(played.bodies.par_iter().enumerate().filter_map(alone));
+    faults.par_extend(played.bodies.par_iter().enumerate().filter(|(t, _)| is_new[*t]).filter_map(alone));
     faults
 }
 
 /// The first of some frames on which a leg cannot do what it should, a joint turns or the hips move faster than in the
 /// captures (with some allowance), or a limb is in a wall.
-pub(super) fn first_unclean(body: &Body, chains: Chains, mut frames: Range<usize>) -> Option<usize> {
+pub(super) fn first_unclean(
+    body: &Body,
+    library: &Library,
+    domain: &Domain,
+    mut frames: Range<usize>,
+) -> Option<usize> {
     frames.find(|&f| {
-        body.strained.binary_search(&f).is_ok()
-            || is_rushed(body, chains.library, f, RUSH)
-            || is_in_wall(body, chains.domain, f)
+        body.strained.binary_search(&f).is_ok() || is_rushed(body, library, f, RUSH) || is_in_wall(body, domain, f)
     })
 }
 
 fn is_in_wall(body: &Body, domain: &Domain, frame: usize) -> bool {
-    let root = body.root[frame];
-    !domain.holds(Vec2::new(root.x, root.z), REACH)
-        && Figure::of(body, canonical(), (body.begin as usize + frame) as i32).is_some_and(|f| f.is_in_wall(domain))
+    let (root, tick) = (body.root[frame], (body.begin as usize + frame) as i32);
+    !domain.holds(Spot::ground(tick), Vec2::new(root.x, root.z), REACH)
+        && Figure::of(body, canonical(), tick).is_some_and(|f| f.is_in_wall(domain, tick))
 }
 
 /// True if from the frame before a joint turns or the hips move `rush` times faster than in the captures.
@@ -81,23 +84,16 @@ pub(super) fn is_rushed(body: &Body, library: &Library, frame: usize, rush: f32)
         || (0..JOINT_COUNT).any(|j| turn_between(before[j], now[j]) > rush * library.fastest[j])
 }
 
-/// Who is in whom at a tick. Bodies are sorted along x so that near ones are neighbours.
-fn touching(chains: Chains, bodies: &[Body], tick: i32) -> Vec<(TrackId, TrackId)> {
-    let place = |t: TrackId| frame_at(&bodies[t], tick).map(|f| Vec2::new(bodies[t].root[f].x, bodies[t].root[f].z));
-    let mut present: Vec<(Vec2, TrackId)> = (0..bodies.len()).filter_map(|t| Some((place(t)?, t))).collect();
-    present.sort_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.1.cmp(&b.1)));
-    let figures: Vec<Figure> =
-        present.iter().map(|&(_, t)| Figure::of(&bodies[t], canonical(), tick).expect("it is there")).collect();
+/// Who is in whom at a tick, somebody new in each pair.
+fn touching(chains: Chains, bodies: &[Body], is_new: &[bool], tick: i32) -> Vec<(TrackId, TrackId)> {
     let mut pairs = Vec::new();
-    for (i, &(here, a)) in present.iter().enumerate() {
-        let reached = present[i + 1..].iter().take_while(|(there, _)| there.x - here.x <= TOUCHING_HIPS);
-        for (figure, &(_, b)) in figures[i + 1..].iter().zip(reached) {
-            let depth = figures[i].depth_into(figure);
-            if depth > TOLERANCE && depth > TOLERANCE + captured_depth(chains, (a, b), tick) {
-                pairs.push((a.min(b), a.max(b)));
-            }
+    let figure = |t: TrackId| Figure::of(&bodies[t], canonical(), tick);
+    pairs_at(tick, bodies.iter(), is_new, figure, |(a, first), (b, second)| {
+        let depth = first.depth_into(second);
+        if depth > TOLERANCE && depth > TOLERANCE + captured_depth(chains, (a, b), tick) {
+            pairs.push((a.min(b), a.max(b)));
         }
-    }
+    });
     pairs
 }
 

@@ -1,14 +1,18 @@
 //! A final body at one moment, as it is tested: its capsules, and the disc on the ground that covers them.
 
+use std::cell::OnceCell;
+
 use glam::{Quat, Vec2, Vec3};
 
-use super::domain::Domain;
+use super::domain::{Domain, Spot};
 use crate::geom::Capsule;
 use crate::motion::{Skeleton, body_capsules};
 use crate::refine::Body;
 
 /// No body reaches further from its hips than this, metres.
 pub(super) const REACH: f32 = 1.1;
+/// Bodies whose hips are further apart than this never touch, metres.
+const TOUCHING_HIPS: f32 = 2.0 * REACH;
 /// Interpenetration that is let pass, metres.
 pub(super) const TOLERANCE: f32 = 0.005;
 
@@ -42,17 +46,15 @@ impl Figure {
         Some(Self::new(&globals))
     }
 
-    /// The least x that it covers.
-    pub fn left(&self) -> f32 {
-        self.center.x - self.radius
-    }
-
-    /// True if a limb is in a wall.
-    pub fn is_in_wall(&self, domain: &Domain) -> bool {
-        let inside = |p: Vec3, radius: f32| domain.holds(Vec2::new(p.x, p.z), radius - TOLERANCE);
+    /// True if a limb is in a wall or an obstacle at a tick.
+    pub fn is_in_wall(&self, domain: &Domain, tick: i32) -> bool {
+        let inside = |p: Vec3, radius: f32| {
+            let lift = p.y - radius + TOLERANCE;
+            domain.holds(Spot { tick, lift }, Vec2::new(p.x, p.z), radius - TOLERANCE)
+        };
         // Bones are so short that three discs each are as good as the whole.
         let free = |c: &Capsule| [0.0, 0.5, 1.0].into_iter().all(|t| inside(c.a.lerp(c.b, t), c.radius));
-        !domain.holds(self.center, self.radius) && !self.capsules.iter().all(free)
+        !domain.holds(Spot::ground(tick), self.center, self.radius) && !self.capsules.iter().all(free)
     }
 
     /// Depth of the deepest pair of capsules, metres; 0 if none touch.
@@ -71,6 +73,37 @@ impl Figure {
             }
         }
         deepest
+    }
+}
+
+/// Calls `meet` with the figures of all pairs of people at a tick whose hips are near enough for them to touch, somebody
+/// new in each pair. `figure` is asked only for those, once.
+pub(super) fn pairs_at<'b>(
+    tick: i32,
+    bodies: impl Iterator<Item = &'b Body>,
+    is_new: &[bool],
+    figure: impl Fn(usize) -> Option<Figure>,
+    mut meet: impl FnMut((usize, &Figure), (usize, &Figure)),
+) {
+    let place = |(person, body): (usize, &Body)| {
+        let root = body.root[frame_at(body, tick)?];
+        Some((Vec2::new(root.x, root.z), person))
+    };
+    // Sorted along x, so that near ones are neighbours.
+    let mut present: Vec<(Vec2, usize)> = bodies.enumerate().filter_map(place).collect();
+    present.sort_unstable_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.1.cmp(&b.1)));
+    let figures: Vec<OnceCell<Option<Figure>>> = present.iter().map(|_| OnceCell::new()).collect();
+    let figure = |i: usize| figures[i].get_or_init(|| figure(present[i].1)).as_ref();
+    for (i, &(here, a)) in present.iter().enumerate() {
+        let reached = present[i + 1..].iter().take_while(|(there, _)| there.x - here.x <= TOUCHING_HIPS);
+        for (k, &(there, b)) in reached.enumerate() {
+            if !(is_new[a] || is_new[b]) || here.distance_squared(there) > TOUCHING_HIPS * TOUCHING_HIPS {
+                continue;
+            }
+            if let (Some(first), Some(second)) = (figure(i), figure(i + 1 + k)) {
+                meet((a, first), (b, second));
+            }
+        }
     }
 }
 

@@ -15,9 +15,15 @@ const SPACING: f32 = 0.05;
 /// The discs of one body at one frame, relative to its path frame: x, z, radius.
 pub(super) type Footprint = [Vec3; DISCS];
 
+/// How high what each disc covers is above the ground at its lowest, metres.
+pub(super) type Lifts = [f32; DISCS];
+
+/// A point that stands for a part of a body: x, z, radius; and how high the part is at its lowest.
+type Atom = (Vec3, f32);
+
 /// Footprints of all frames of a role, each grown by `margin` metres. A box that lies there covers ground from the
 /// first frame of who takes it up, and to the last of who puts it down.
-pub(super) fn footprints(kind: &PatchKind, role: u32, margin: f32) -> Vec<Footprint> {
+pub(super) fn footprints(kind: &PatchKind, role: u32, margin: f32) -> Vec<(Footprint, Lifts)> {
     let fragment = &kind.fragments[role as usize];
     let motion = &fragment.motion;
     let mut globals: Vec<(Vec3, Quat)> = Vec::new();
@@ -76,45 +82,51 @@ pub(super) fn reach(footprint: &Footprint) -> f32 {
     footprint.iter().map(|d| Vec2::new(d.x, d.y).length() + d.z).fold(0.0, f32::max)
 }
 
-fn scatter(c: &Capsule, atoms: &mut Vec<Vec3>) {
+fn scatter(c: &Capsule, atoms: &mut Vec<Atom>) {
     let (a, b) = (Vec2::new(c.a.x, c.a.z), Vec2::new(c.b.x, c.b.z));
     let steps = ((b - a).length() / SPACING).ceil().max(1.0) as usize;
     let half = (b - a).length() / steps as f32 * 0.5;
     // A disc of sqrt(r^2 + half^2) at each point covers the stadium's sides between two points.
     let radius = c.radius.hypot(half);
-    atoms.extend((0..=steps).map(|i| a.lerp(b, i as f32 / steps as f32).extend(radius)));
+    let sag = c.radius + (c.b.y - c.a.y).abs() / steps as f32 * 0.5;
+    atoms.extend((0..=steps).map(|i| {
+        let at = c.a.lerp(c.b, i as f32 / steps as f32);
+        (Vec3::new(at.x, at.z, radius), at.y - sag)
+    }));
 }
 
 /// Points around a box's ground plan, discs without radius.
-fn strew(cuboid: &Cuboid, atoms: &mut Vec<Vec3>) {
+fn strew(cuboid: &Cuboid, atoms: &mut Vec<Atom>) {
+    let bottom = cuboid.at.middle.y - cuboid.half.y;
     let plan = cuboid.plan();
     for (i, corner) in plan.into_iter().enumerate() {
         let next = plan[(i + 1) % plan.len()];
         let steps = ((next - corner).length() / SPACING).ceil().max(1.0) as usize;
         let half = (next - corner).length() / steps as f32 * 0.5;
-        atoms.extend((0..steps).map(|k| corner.lerp(next, (k as f32 + 0.5) / steps as f32).extend(half)));
+        atoms.extend((0..steps).map(|k| (corner.lerp(next, (k as f32 + 0.5) / steps as f32).extend(half), bottom)));
     }
 }
 
 /// Farthest-point start.
-fn spread(atoms: &[Vec3]) -> [Vec2; DISCS] {
-    let mut centers = [atoms[0].truncate(); DISCS];
+fn spread(atoms: &[Atom]) -> [Vec2; DISCS] {
+    let place = |a: &Atom| a.0.truncate();
+    let mut centers = [place(&atoms[0]); DISCS];
     for k in 1..DISCS {
-        let gap = |a: &Vec3| centers[..k].iter().map(|c| c.distance(a.truncate())).fold(f32::INFINITY, f32::min);
+        let gap = |a: &Atom| centers[..k].iter().map(|c| c.distance(place(a))).fold(f32::INFINITY, f32::min);
         let farthest = atoms.iter().max_by(|a, b| gap(a).total_cmp(&gap(b))).expect("bodies have capsules");
-        centers[k] = farthest.truncate();
+        centers[k] = place(farthest);
     }
     centers
 }
 
 /// A few rounds of Lloyd's algorithm from the last frame's centres, so that discs move with the body.
-fn cover(atoms: &[Vec3], centers: &mut [Vec2; DISCS], margin: f32) -> Footprint {
+fn cover(atoms: &[Atom], centers: &mut [Vec2; DISCS], margin: f32) -> (Footprint, Lifts) {
     let nearest = |centers: &[Vec2; DISCS], a: &Vec3| {
         (0..DISCS).min_by(|&i, &j| centers[i].distance(a.truncate()).total_cmp(&centers[j].distance(a.truncate())))
     };
     for _ in 0..4 {
         let (mut low, mut high) = ([Vec2::INFINITY; DISCS], [Vec2::NEG_INFINITY; DISCS]);
-        for atom in atoms {
+        for (atom, _) in atoms {
             let k = nearest(centers, atom).expect("DISCS > 0");
             low[k] = low[k].min(atom.truncate() - atom.z);
             high[k] = high[k].max(atom.truncate() + atom.z);
@@ -125,12 +137,13 @@ fn cover(atoms: &[Vec3], centers: &mut [Vec2; DISCS], margin: f32) -> Footprint 
             }
         }
     }
-    let mut discs = centers.map(|c| c.extend(0.0));
-    for atom in atoms {
+    let (mut discs, mut lifts) = (centers.map(|c| c.extend(0.0)), [f32::INFINITY; DISCS]);
+    for (atom, lift) in atoms {
         let k = nearest(centers, atom).expect("DISCS > 0");
         discs[k].z = discs[k].z.max(centers[k].distance(atom.truncate()) + atom.z + margin);
+        lifts[k] = lifts[k].min(lift - margin);
     }
-    discs
+    (discs, lifts)
 }
 
 #[cfg(test)]
@@ -158,7 +171,7 @@ mod tests {
                 for k in 0..24 {
                     let angle = k as f32 / 24.0 * std::f32::consts::TAU;
                     let p = c.a.lerp(c.b, i as f32 / 50.0) + Vec3::new(angle.cos(), 0.0, angle.sin()) * c.radius;
-                    let covered = discs[1].iter().any(|d| d.truncate().distance(Vec2::new(p.x, p.z)) <= d.z + 1e-4);
+                    let covered = discs[1].0.iter().any(|d| d.truncate().distance(Vec2::new(p.x, p.z)) <= d.z + 1e-4);
                     assert!(covered, "{p}");
                 }
             }

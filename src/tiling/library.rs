@@ -4,7 +4,9 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use super::audition::plays_cleanly;
-use super::footprint::{Footprint, footprints, lying, reach};
+use super::bridge::Port;
+use super::footprint::{Footprint, Lifts, footprints, lying, reach};
+use super::piece::Piece;
 use crate::deform::{Limits, Strand};
 use crate::geom::{Ground, Turn, Upright};
 use crate::motion::{JOINT_COUNT, Motion, MotionPath};
@@ -50,6 +52,8 @@ pub(super) struct Role {
     pub hips_turns: Vec<f32>,
     /// Footprints per frame.
     pub footprints: Vec<Footprint>,
+    /// How high they are above the ground, per frame.
+    pub lifts: Vec<Lifts>,
     /// Radius of each footprint around the path point.
     pub reach: Vec<f32>,
     /// The box that lies there before the role takes it up, and the one after the role put it down.
@@ -208,6 +212,34 @@ impl<'a> Library<'a> {
             .any(|(own, bend)| bend > 1e-4 && (own + bend) * rate > HURRY * self.fastest[0])
     }
 
+    /// The closings from one pose group to another.
+    pub fn closings_between(&self, from: u32, to: u32) -> &Closings {
+        &self.closings[from as usize * self.set.groups.len() + to as usize]
+    }
+
+    /// Number of people in the patch of a role.
+    pub fn people_of(&self, role: u32) -> usize {
+        self.set.kinds[self.roles[role as usize].kind as usize].people()
+    }
+
+    /// The port at which a piece begins.
+    pub fn entry_of(&self, piece: &Piece) -> Port {
+        Port { at: piece.entry(), tick: piece.begin, group: self.roles[piece.role as usize].entry_group }
+    }
+
+    /// The port at which a piece ends.
+    pub fn exit_of(&self, piece: &Piece) -> Port {
+        Port { at: piece.exit(), tick: piece.end, group: self.roles[piece.role as usize].exit_group }
+    }
+
+    /// Entry and exit of a role of a patch that is placed rigidly, its clock beginning at tick `clock`.
+    pub fn ports(&self, role: u32, world_from_patch: Ground, clock: i32) -> (Port, Port) {
+        let r = &self.roles[role as usize];
+        let entry = Port { at: world_from_patch.then(r.entry), tick: clock + r.begin, group: r.entry_group };
+        let exit = Port { at: entry.at.then(r.exit), tick: entry.tick + r.ticks, group: r.exit_group };
+        (entry, exit)
+    }
+
     /// The roles of a kind.
     pub fn roles_of(&self, kind: u32) -> std::ops::Range<u32> {
         let first = self.first_role[kind as usize];
@@ -224,7 +256,7 @@ fn prepare(set: &PatchSet, kind: u32, role: u32, limits: &Limits, fastest: &[f32
         points: source.points.iter().map(|&p| entry_from_patch.apply(p)).collect(),
         headings: source.headings.iter().map(|h| h - entry.heading).collect(),
     };
-    let footprints = footprints(&set.kinds[kind as usize], role, MARGIN);
+    let (footprints, lifts): (Vec<_>, Vec<_>) = footprints(&set.kinds[kind as usize], role, MARGIN).into_iter().unzip();
     Role {
         kind,
         role,
@@ -240,6 +272,7 @@ fn prepare(set: &PatchSet, kind: u32, role: u32, limits: &Limits, fastest: &[f32
         reach: footprints.iter().map(reach).collect(),
         rests: rests(&set.kinds[kind as usize], role),
         footprints,
+        lifts,
         path,
     }
 }

@@ -6,13 +6,13 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
-use super::bake::{Chains, segments_of};
+use super::bake::uses;
 use super::bridge::Taste;
+use super::draft::Draft;
 use super::faults::{Fault, first_unclean};
-use super::tracks::{TrackId, Tracks, Undo, Window};
-use crate::patch::PatchKind;
-use crate::refine::{Body, Performance, Segment, refine, refine_all};
-use crate::stage::FragmentUse;
+use super::rehearsal::segments;
+use super::tracks::{TrackId, Tracks, Window};
+use crate::refine::refine;
 
 /// Windows around a fault are widened by multiples of this, ticks.
 const WINDOW: i32 = 24;
@@ -23,46 +23,25 @@ const TRIES: i32 = 10;
 /// Ticks around a window over which its stitches may change a body.
 const BLEND_TICKS: i32 = 16;
 
-/// The final bodies of all people, and the boxes that they carry.
-pub(super) fn perform(chains: Chains) -> Performance {
-    let uses: Vec<_> = (0..chains.lists.len()).map(|t| segments_of(chains, t)).collect();
-    let people: Vec<Vec<Segment>> = uses.iter().map(|uses| segments(uses)).collect();
-    refine_all(&people, chains.domain.horizon as u32 - 1)
-}
-
-/// The final body of a person, but for touching others.
-fn body(chains: Chains, track: TrackId) -> Body {
-    refine(&segments(&segments_of(chains, track)), chains.domain.horizon as u32 - 1)
-}
-
-fn segments<'a>(uses: &'a [(&'a PatchKind, FragmentUse)]) -> Vec<Segment<'a>> {
-    uses.iter().map(|(kind, placed)| Segment { kind, placed }).collect()
-}
-
-/// Bridges one of the two people's tracks anew around the fault; false if no way was found.
-pub(super) fn mend(tracks: &mut Tracks, fault: Fault, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
-    (0..TRIES).any(|attempt| {
+/// Bridges one of the two people's tracks anew around the fault.
+pub(super) fn mend(draft: &mut Draft, fault: Fault, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+    (0..TRIES).find_map(|attempt| {
         let track = if rng.random_range(0..2) == 0 { fault.a } else { fault.b };
-        near(tracks, track, fault.tick, 1, |people| people == 1).is_some_and(|at| {
-            rebridge(tracks, vec![Window { track, from: at, to: at + 1 }], attempt + 1..=attempt + 1, taste, rng)
-        })
+        let at = near(draft.base, track, fault.tick, 1, |people| people == 1)?;
+        rebridge(draft, vec![Window { track, from: at, to: at + 1 }], attempt + 1..=attempt + 1, taste, rng)
     })
 }
 
-/// Takes out the patch of several people nearest to a fault that nothing else mends, and bridges its people's tracks;
-/// false if there is none or no way was found.
-pub(super) fn dissolve(tracks: &mut Tracks, fault: Fault, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
-    (0..TRIES).any(|attempt| {
+/// Takes out the patch of several people nearest to a fault that nothing else mends, and bridges its people's tracks.
+pub(super) fn dissolve(draft: &mut Draft, fault: Fault, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+    let tracks = draft.base;
+    (0..TRIES).find_map(|attempt| {
         let track = if rng.random_range(0..2) == 0 { fault.a } else { fault.b };
-        let Some(at) = near(tracks, track, fault.tick, DISSOLVE_REACH, |people| people > 1) else { return false };
+        let at = near(tracks, track, fault.tick, DISSOLVE_REACH, |people| people > 1)?;
         let instance = tracks.piece(tracks.tracks[track][at]).instance;
-        let windows: Vec<Window> = (0..tracks.tracks.len())
-            .filter_map(|t| {
-                let from = tracks.tracks[t].iter().position(|&id| tracks.piece(id).instance == instance)?;
-                Some(Window { track: t, from, to: from + 1 })
-            })
-            .collect();
-        rebridge(tracks, windows, 0..=attempt, taste, rng)
+        let window = |track| tracks.index_in(track, instance).map(|from| Window { track, from, to: from + 1 });
+        let windows = (0..tracks.tracks.len()).filter_map(window).collect();
+        rebridge(draft, windows, 0..=attempt, taste, rng)
     })
 }
 
@@ -82,33 +61,28 @@ fn near(tracks: &Tracks, track: TrackId, tick: i32, reach: usize, wanted: impl F
 /// Rips up windows of tracks, each widened by as many [`WINDOW`]s as are drawn, and bridges them another way, in random
 /// order, on which everybody moves cleanly.
 fn rebridge(
-    tracks: &mut Tracks,
+    draft: &mut Draft,
     mut windows: Vec<Window>,
     wider: RangeInclusive<i32>,
     taste: Taste,
     rng: &mut ChaCha8Rng,
-) -> bool {
-    let mut undo = Undo::default();
+) -> Option<()> {
+    draft.restart();
     windows.shuffle(rng);
     for window in &mut windows {
-        *window = tracks.widen(*window, WINDOW * rng.random_range(wider.clone()));
+        *window = draft.base.widen(*window, WINDOW * rng.random_range(wider.clone()));
+        draft.hide(*window);
     }
-    let spans: Vec<_> =
-        windows.iter().map(|w| (tracks.port(w.track, w.from).tick, tracks.port(w.track, w.to).tick)).collect();
-    windows.iter().for_each(|&w| tracks.hide_window(w, &mut undo));
-    let done = windows.iter().all(|&w| tracks.bridge_window(w, taste, rng, &mut undo).is_some())
-        && windows.iter().zip(&spans).all(|(w, span)| is_clean(tracks.chains(), w.track, *span));
-    if done {
-        tracks.commit(undo);
-    } else {
-        tracks.roll_back(undo);
-    }
-    done
+    windows.iter().try_for_each(|&w| draft.bridge_window(w, taste, rng))?;
+    windows.iter().all(|&w| is_clean(draft, w)).then_some(())
 }
 
-/// True if a person moves cleanly over some ticks and a blend's length around them.
-fn is_clean(chains: Chains, track: TrackId, (from, to): (i32, i32)) -> bool {
-    let body = body(chains, track);
+/// True if a person moves cleanly over a window and a blend's length around it.
+fn is_clean(draft: &Draft, window: Window) -> bool {
+    let Tracks { library, domain, .. } = draft.base;
+    let pieces = draft.track(window.track).iter().map(|&id| draft.piece(id));
+    let body = refine(&segments(&uses(library, domain.horizon, pieces)), domain.horizon as u32 - 1);
+    let ticks = draft.base.span(window);
     let frame = |tick: i32| (tick - body.begin as i32).clamp(0, body.root.len() as i32) as usize;
-    first_unclean(&body, chains, frame(from - BLEND_TICKS)..frame(to + BLEND_TICKS)).is_none()
+    first_unclean(&body, library, domain, frame(ticks.start - BLEND_TICKS)..frame(ticks.end + BLEND_TICKS)).is_none()
 }

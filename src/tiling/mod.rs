@@ -5,21 +5,28 @@ mod bake;
 mod boxes;
 mod bridge;
 mod builds;
+mod crew;
 mod domain;
+mod draft;
 mod engine;
 mod enrich;
 mod faults;
 mod figure;
 mod footprint;
+mod gather;
 mod library;
 mod mend;
 mod occupancy;
 mod outcome;
 mod paper;
 mod piece;
+mod plan;
+mod rehearsal;
 mod scene;
 mod seed;
+mod sketch;
 mod tracks;
+mod view;
 
 #[cfg(test)]
 #[path = "../../tests/common/mod.rs"]

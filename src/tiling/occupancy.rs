@@ -4,12 +4,9 @@ use std::ops::{ControlFlow, RangeInclusive};
 
 use glam::Vec2;
 
-use super::bridge::NO_INSTANCE;
 use super::domain::Domain;
-use super::footprint::Footprint;
 use super::library::Library;
-use super::piece::{Body, Rigid, footprint, overlap, world_discs};
-pub(super) use super::piece::{Piece, depth};
+use super::piece::Piece;
 
 /// Cell size of the grid in metres.
 const CELL: f32 = 1.0;
@@ -29,29 +26,15 @@ struct Cell {
     bodies: [Shown; CELL_BODIES],
 }
 
+/// A body as the cheap tests see it.
 #[derive(Clone, Copy, Default)]
-struct Shown {
-    id: PieceId,
-    position: Vec2,
-    reach: f32,
-}
-
-/// Whose bodies are asked about.
-#[derive(Clone, Copy)]
-struct Player<'a> {
-    library: &'a Library<'a>,
-    role: u32,
-    instance: u32,
-}
-
-impl Player<'_> {
-    fn discs(self, body: &Body) -> Footprint {
-        world_discs(body, footprint(self.library, self.role, body))
-    }
-
-    fn is_inside(self, domain: &Domain, body: &Body) -> bool {
-        domain.holds(body.position, body.reach) || self.discs(body).iter().all(|d| domain.holds(d.truncate(), d.z))
-    }
+pub(super) struct Shown {
+    /// Its piece.
+    pub id: PieceId,
+    /// Where its path point is.
+    pub position: Vec2,
+    /// It does not reach further from there.
+    pub reach: f32,
 }
 
 /// All placed pieces.
@@ -153,84 +136,25 @@ impl Occupancy {
         (c.x as i32 - FAR as i32, c.y as i32 - FAR as i32)
     }
 
-    /// True if the piece stays inside the domain and clear of all bodies shown, but for those of its own instance.
-    pub fn is_free(&self, library: &Library, domain: &Domain, piece: &Piece) -> bool {
-        let player = Player { library, role: piece.role, instance: piece.instance };
-        self.is_clear(domain, player, piece.shown_from, piece.bodies.len(), |i| piece.bodies[i])
-    }
-
-    /// The same of a role placed rigidly, if it is no part of an instance and leaves no boxes lying.
-    pub fn is_free_rigid(&self, library: &Library, domain: &Domain, role: u32, rigid: Rigid) -> bool {
-        let (player, ticks) = (Player { library, role, instance: NO_INSTANCE }, rigid.ticks(domain));
-        self.is_clear(domain, player, ticks.start, ticks.len(), |i| rigid.body(ticks.start + i as i32))
-    }
-
-    /// Frames are probed coarse to fine.
-    fn is_clear(&self, domain: &Domain, player: Player, from: i32, n: usize, body: impl Fn(usize) -> Body) -> bool {
-        let free = |i: usize| {
-            let body = body(i);
-            player.is_inside(domain, &body)
-                && self.meet(player, from + i as i32, &body, &mut |_| ControlFlow::Break(())).is_continue()
-        };
-        (0..n).step_by(8).all(free) && (4..n).step_by(8).all(free) && (0..n).filter(|i| i % 4 != 0).all(free)
-    }
-
-    /// The pieces whose bodies are in the way of `piece`, sorted; `None` if a wall or a crush is.
-    pub fn blockers(&self, library: &Library, domain: &Domain, piece: &Piece) -> Option<Vec<PieceId>> {
-        let player = Player { library, role: piece.role, instance: piece.instance };
-        if !piece.bodies.iter().all(|body| player.is_inside(domain, body)) {
-            return None;
-        }
-        let mut found = Vec::new();
-        for (tick, body) in (piece.shown_from..).zip(&piece.bodies) {
-            let crush = self.meet(player, tick, body, &mut |id| {
-                if let Some(id) = id {
-                    found.push(id);
-                    return ControlFlow::Continue(());
-                }
-                ControlFlow::Break(())
-            });
-            if crush.is_break() {
-                return None;
-            }
-        }
-        found.sort_unstable();
-        found.dedup();
-        Some(found)
-    }
-
-    /// Calls `met` with each piece whose body overlaps `body`, or with `None` for a cell that is full, until it breaks.
-    fn meet(
+    /// Calls `see` with each body at a tick that may reach to within `reach` of `position`, or with `None` for a cell that is
+    /// full, until it breaks.
+    #[inline]
+    pub fn visit(
         &self,
-        player: Player,
         tick: i32,
-        body: &Body,
-        met: &mut impl FnMut(Option<PieceId>) -> ControlFlow<()>,
+        position: Vec2,
+        reach: f32,
+        see: &mut impl FnMut(Option<&Shown>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let library = player.library;
-        let reach = body.reach + self.max_reach;
-        let mut discs = None;
-        let (columns, rows) = self.cells_within(body.position, reach);
+        let (columns, rows) = self.cells_within(position, reach + self.max_reach);
         for z in rows {
             for x in columns.clone() {
                 let cell = &self.cells[((tick * self.rows + z) * self.columns + x) as usize];
                 if cell.count as usize == CELL_BODIES {
-                    met(None)?;
+                    see(None)?;
                 }
                 for shown in &cell.bodies[..cell.count as usize] {
-                    let apart = body.reach + shown.reach;
-                    if body.position.distance_squared(shown.position) >= apart * apart {
-                        continue;
-                    }
-                    let other = self.piece(shown.id);
-                    if other.instance == player.instance && player.instance != NO_INSTANCE {
-                        continue;
-                    }
-                    let theirs = other.body(tick).expect("shown at this tick");
-                    let own = discs.get_or_insert_with(|| player.discs(body));
-                    if overlap(own, &world_discs(theirs, footprint(library, other.role, theirs))) {
-                        met(Some(shown.id))?;
-                    }
+                    see(Some(shown))?;
                 }
             }
         }

@@ -6,11 +6,13 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::Scene;
-use super::bridge::{Bridge, Goal, NO_INSTANCE, Port, Taste, View};
+use super::bridge::{Bridge, Goal, NO_INSTANCE, Port, Taste};
 use super::common::plain_set;
 use super::domain::Domain;
 use super::library::Library;
-use super::occupancy::{Occupancy, Piece};
+use super::occupancy::Occupancy;
+use super::piece::{Company, Piece};
+use super::view::View;
 use crate::geom::{Ground, Polygon, wrap_angle};
 use crate::patch::PatchSet;
 
@@ -33,7 +35,7 @@ fn small_set() -> PatchSet {
 fn small_scene() -> Scene {
     Scene {
         region: Polygon::rectangle(Vec2::ZERO, Vec2::new(5.0, 4.0)),
-        obstacles: vec![Polygon::rectangle(Vec2::new(2.2, 1.6), Vec2::new(2.8, 2.4))],
+        obstacles: vec![Polygon::rectangle(Vec2::new(2.2, 1.6), Vec2::new(2.8, 2.4)).into()],
         duration_secs: 4.0,
         ..Scene::demo()
     }
@@ -111,10 +113,10 @@ impl Case<'_> {
     /// A bridge and the number of searches it took. Of states that hardly differ the search keeps one, and which one
     /// is chance: it may be the one that leads nowhere, so the search is given a few chances.
     fn search(&self, goal: Goal, rng: &mut ChaCha8Rng) -> (Option<Vec<Piece>>, usize) {
-        let view = View { library: self.library, domain: self.domain, occupancy: &self.occupancy };
+        let view = View::new(self.library, self.domain, &self.occupancy);
         let taste = Taste { calm: 1.0, expansions: 20_000 };
         let mut tries = 0;
-        let found = std::iter::repeat_with(|| Bridge::default().search(view, self.from, goal, taste, rng));
+        let found = std::iter::repeat_with(|| Bridge::default().search(view, self.from, goal, Company::NONE, taste, rng));
         let found = found.take(CHANCES).inspect(|_| tries += 1).find_map(|chain| chain);
         (found, tries)
     }
@@ -169,7 +171,7 @@ fn case<'a>(library: &'a Library<'a>, domain: &'a Domain, people: usize, rng: &m
         let free = case.room(&piece) >= 1e-4;
         // The planner's own answer is the brute-force one, but where the two differ by rounding.
         if case.room(&piece).abs() > 1e-4 {
-            assert_eq!(case.occupancy.is_free(library, domain, &piece), free);
+            assert_eq!(View::new(library, domain, &case.occupancy).is_free(&piece), free);
         }
         if free {
             case.occupancy.insert(piece.clone());

@@ -27,7 +27,7 @@ use super::domain::Domain;
 use super::engine::{Clock, wishes};
 use super::faults::faults;
 use super::library::Library;
-use super::mend::perform;
+use super::rehearsal::perform;
 use super::outcome::{Options, Outcome, Phase, Progress, Status};
 use crate::patch::PatchSet;
 use crate::refine::Performance;
@@ -75,7 +75,7 @@ fn mend(
         let lists = tiling.characters();
         let chains = tiling.chains(&lists);
         let played = perform(chains);
-        let faults = faults(chains, &played);
+        let faults = faults(chains, &played, &vec![true; lists.len()]);
         round += 1;
         if faults.is_empty() || round > MEND_ROUNDS || !clock.goes_on(|| tiling.state(Phase::Mend)) {
             return (lists, played, faults.len());

@@ -2,14 +2,54 @@
 
 use glam::Vec2;
 
+use super::bridge::NO_INSTANCE;
 use super::domain::Domain;
-use super::footprint::{DISCS, Footprint};
+use super::footprint::{DISCS, Footprint, Lifts};
 use super::library::{Library, Role};
 use crate::geom::{Ground, Turn};
 use crate::motion::MotionPath;
 
 /// In place of a source frame: a box that lies there before (+ 0) or after (+ 1) the piece.
 const LYING: u32 = u32::MAX - 1;
+
+/// Ticks after leaving a patch of several people, and before entering one, over which its people may be as near as they
+/// are inside: whoever parts from an embrace is still in it for a moment. Final bodies are tested exactly.
+const PARTING: i32 = 8;
+
+/// The patches of several people that somebody leaves to begin a piece, and enters at its end; `NO_INSTANCE` if none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Company {
+    pub from: u32,
+    pub to: u32,
+}
+
+impl Company {
+    /// Nobody before and after.
+    pub const NONE: Self = Self { from: NO_INSTANCE, to: NO_INSTANCE };
+}
+
+/// Which instances somebody is with, and when: the own one over the whole time, those before and after for a moment.
+#[derive(Clone, Copy)]
+pub(super) struct Ties {
+    pub instance: u32,
+    pub company: Company,
+    pub begin: i32,
+    pub end: i32,
+}
+
+impl Ties {
+    fn at(self, tick: i32) -> [u32; 3] {
+        let only = |is_there: bool, instance: u32| if is_there { instance } else { NO_INSTANCE };
+        let from = only(tick < self.begin + PARTING, self.company.from);
+        [self.instance, from, only(tick >= self.end - PARTING, self.company.to)]
+    }
+
+    /// True if two people are in one patch at a tick, or as good as.
+    pub fn join(self, other: Self, tick: i32) -> bool {
+        let theirs = other.at(tick);
+        self.at(tick).into_iter().any(|i| i != NO_INSTANCE && theirs.contains(&i))
+    }
+}
 
 /// A body at one tick, or the box that lies there in its place.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +67,8 @@ pub(super) struct Piece {
     pub role: u32,
     /// Index of the instance.
     pub instance: u32,
+    /// The patches of several people that it leads from and to.
+    pub company: Company,
     /// Tick of the entry.
     pub begin: i32,
     /// Tick of the exit.
@@ -50,7 +92,8 @@ impl Piece {
             headings: source.path.headings.iter().map(|h| h + from.heading).collect(),
         };
         let bodies = rigid.ticks(domain).map(|tick| rigid.body(tick)).collect();
-        let mut piece = Self { role, instance, begin, end, path, shown_from: begin.max(0), bodies };
+        let company = Company::NONE;
+        let mut piece = Self { role, instance, company, begin, end, path, shown_from: begin.max(0), bodies };
         piece.lay_boxes(source, domain.horizon);
         piece
     }
@@ -81,7 +124,8 @@ impl Piece {
             }
         });
         let bodies = bodies.collect();
-        let mut piece = Self { role, instance, begin, end, path, shown_from: begin.max(0), bodies };
+        let company = Company::NONE;
+        let mut piece = Self { role, instance, company, begin, end, path, shown_from: begin.max(0), bodies };
         piece.lay_boxes(source, domain.horizon);
         piece
     }
@@ -110,6 +154,11 @@ impl Piece {
     /// State at the exit.
     pub fn exit(&self) -> Ground {
         self.path.at(self.path.len() - 1)
+    }
+
+    /// Whom it is with.
+    pub fn ties(&self) -> Ties {
+        Ties { instance: self.instance, company: self.company, begin: self.begin, end: self.end }
     }
 
     /// What is there at a tick.
@@ -167,6 +216,11 @@ impl<'a> Rigid<'a> {
         Self { source: &library.roles[role as usize], from, turn: from.turn(), begin }
     }
 
+    /// Whom it is with.
+    pub fn ties(&self, company: Company) -> Ties {
+        Ties { instance: NO_INSTANCE, company, begin: self.begin, end: self.begin + self.source.ticks }
+    }
+
     /// The ticks that it occupies.
     pub fn ticks(&self, domain: &Domain) -> std::ops::Range<i32> {
         self.begin.max(0)..(self.begin + self.source.ticks).min(domain.horizon)
@@ -208,6 +262,11 @@ pub(super) fn footprint<'a>(library: &'a Library, role: u32, body: &Body) -> &'a
     }
 }
 
+/// How high what each disc of a body covers is above the ground.
+pub(super) fn lifts(library: &Library, role: u32, body: &Body) -> Lifts {
+    library.roles[role as usize].lifts.get(body.frame as usize).copied().unwrap_or([0.0; DISCS])
+}
+
 /// The discs of a body in the world.
 pub(super) fn world_discs(body: &Body, footprint: &Footprint) -> Footprint {
     footprint.map(|d| (body.position + body.turn.apply(d.truncate())).extend(d.z))
@@ -232,6 +291,7 @@ mod tests {
     use super::super::common::plain_set;
     use super::super::occupancy::Occupancy;
     use super::super::scene::Scene;
+    use super::super::view::View;
     use super::*;
     use crate::deform::Limits;
     use crate::geom::Upright;
@@ -267,16 +327,16 @@ mod tests {
         let id = occupancy.insert(lifting);
         for begin in [-10, 20, 200, domain.horizon - 20] {
             let (through, past) = (walker(6.0, begin), walker(7.2, begin));
-            assert!(!occupancy.is_free(&library, &domain, &through), "at tick {begin}");
-            assert_eq!(occupancy.blockers(&library, &domain, &through), Some(vec![id]));
+            assert!(!View::new(&library, &domain, &occupancy).is_free(&through), "at tick {begin}");
+            assert_eq!(View::new(&library, &domain, &occupancy).blockers(&through), Some(vec![id]));
             assert!(through.meets(occupancy.piece(id), &library) && !past.meets(occupancy.piece(id), &library));
-            assert!(occupancy.is_free(&library, &domain, &past), "at tick {begin}");
+            assert!(View::new(&library, &domain, &occupancy).is_free(&past), "at tick {begin}");
         }
         // Nobody is there who could be cast.
         let mut near = vec![];
         occupancy.near(50, Vec2::new(6.0, 6.6), 2.0, &mut near);
         assert!(near.is_empty());
         occupancy.hide(id);
-        assert!(occupancy.is_free(&library, &domain, &walker(6.0, 20)));
+        assert!(View::new(&library, &domain, &occupancy).is_free(&walker(6.0, 20)));
     }
 }

@@ -6,7 +6,7 @@ use glam::Vec2;
 use toml::Spanned;
 
 use crate::deform::Limits;
-use crate::geom::Polygon;
+use crate::geom::{Obstacle, Polygon};
 use crate::motion::FPS;
 use crate::{Error, Result};
 
@@ -16,7 +16,7 @@ pub struct Scene {
     /// Everybody stays inside.
     pub region: Polygon,
     /// Everybody stays out of each.
-    pub obstacles: Vec<Polygon>,
+    pub obstacles: Vec<Obstacle>,
     /// Seconds.
     pub duration_secs: f32,
     /// How many people are wished for.
@@ -86,7 +86,8 @@ impl Scene {
             problems.push((line_of(text, span.start), problem));
         };
         let region = polygon(&raw.region, "region", &mut bad);
-        let obstacles: Vec<_> = raw.obstacles.iter().filter_map(|o| polygon(o, "obstacle", &mut bad)).collect();
+        let obstacles: Vec<_> =
+            raw.obstacles.iter().filter_map(|o| polygon(o, "obstacle", &mut bad)).map(Obstacle::from).collect();
         let duration = *raw.duration_secs.get_ref();
         if !(duration > 0.0 && duration <= MAX_SECS) {
             bad(raw.duration_secs.span(), format!("expected duration_secs in (0, {MAX_SECS}], found {duration}"));

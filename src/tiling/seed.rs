@@ -4,43 +4,42 @@ use glam::Vec2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::bridge::{Goal, Port, Taste};
+use super::bridge::{Goal, NO_INSTANCE, Taste};
+use super::domain::Spot;
+use super::draft::Draft;
 use super::library::{Library, Move};
-use super::tracks::{Tracks, Undo};
+use super::piece::{Company, Piece};
 use crate::geom::Ground;
 
-/// Tries to add a person at a random place of the domain, present over the whole time; one who begins with a box in the
-/// hands, or by taking one up, if so wished.
-pub(super) fn seed_person(tracks: &mut Tracks, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> bool {
-    let domain = tracks.domain;
-    let role = first_role(tracks.library, laden, rng);
+/// Places tried for one person.
+const PLACES: usize = 20;
+
+/// Adds a person at a random place of the domain, present over the whole time; one who begins with a box in the hands,
+/// or by taking one up, if so wished.
+pub(super) fn seed_person(draft: &mut Draft, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+    let first = (0..PLACES).find_map(|_| first_piece(draft, laden, rng))?;
+    let exit = draft.base.library.exit_of(&first);
+    let mut pieces = vec![draft.add(first)];
+    pieces.extend(draft.search(exit, Goal::Until(draft.base.domain.horizon), Company::NONE, taste, rng)?);
+    draft.push_track(pieces);
+    Some(())
+}
+
+/// A free patch of one person that is going on at tick 0.
+fn first_piece(draft: &Draft, laden: bool, rng: &mut ChaCha8Rng) -> Option<Piece> {
+    let (library, domain) = (draft.base.library, draft.base.domain);
+    let role = first_role(library, laden, rng);
     let place = Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
     let heading = rng.random_range(-std::f32::consts::PI..std::f32::consts::PI);
-    let lead = rng.random_range(0..tracks.library.roles[role as usize].ticks);
-    if !domain.holds(place, 0.35) {
-        return false;
+    let lead = rng.random_range(0..library.roles[role as usize].ticks);
+    if !domain.holds(Spot::ground(0), place, 0.35) {
+        return None;
     }
     // The place is where the person is at tick 0, somewhere inside the first patch.
-    let source = &tracks.library.roles[role as usize];
-    let entry_from_start = source.path.at(lead as usize).inverse();
+    let entry_from_start = library.roles[role as usize].path.at(lead as usize).inverse();
     let start = Ground::new(place, heading).then(entry_from_start);
-    let port = Port { at: start, tick: -lead, group: source.entry_group };
-    let first =
-        super::occupancy::Piece::rigid(tracks.library, domain, role, super::bridge::NO_INSTANCE, start, port.tick);
-    if !tracks.is_free(&first) {
-        return false;
-    }
-    let exit = Port { at: first.exit(), tick: first.end, group: source.exit_group };
-    let mut undo = Undo::default();
-    let mut pieces = vec![tracks.add(first, &mut undo)];
-    let Some(rest) = tracks.search(exit, Goal::Until(domain.horizon), taste, rng) else {
-        tracks.roll_back(undo);
-        return false;
-    };
-    pieces.extend(tracks.add_chain(rest, &mut undo));
-    tracks.push_track(pieces);
-    tracks.commit(undo);
-    true
+    let first = Piece::rigid(library, domain, role, NO_INSTANCE, start, -lead);
+    draft.view().is_free(&first).then_some(first)
 }
 
 /// Any single-person role without a box; or with one, half of them roles that take it up, if there are such.

@@ -1,17 +1,23 @@
 //! The state of the engine: every person is a track of pieces from the first tick to the last. It is a perfect tiling
-//! after every change, because a change that cannot be completed is undone.
+//! after every change, because changes are proposed whole (see [`Draft`](super::draft::Draft)) and taken or left.
 
-use rand_chacha::ChaCha8Rng;
+use std::ops::Range;
 
 use super::bake::Chains;
-use super::bridge::{Bridge, Goal, NO_INSTANCE, Port, Taste, View};
+use super::bridge::{NO_INSTANCE, Port};
 use super::domain::Domain;
 use super::library::Library;
-use super::occupancy::{Occupancy, Piece, PieceId};
+use super::occupancy::{Occupancy, PieceId};
+use super::piece::Piece;
+use super::sketch::Sketch;
+use super::view::View;
 use crate::geom::Ground;
 
 /// Index of a person.
 pub(super) type TrackId = usize;
+
+/// In place of a person: one who is not there yet.
+pub(super) const NEWCOMER: TrackId = TrackId::MAX;
 
 /// The tiling as tracks.
 pub(super) struct Tracks<'a> {
@@ -27,7 +33,18 @@ pub(super) struct Tracks<'a> {
     owners: Vec<TrackId>,
     /// Next number for an instance; numbers are made dense when the crowd is baked.
     next_instance: u32,
-    bridge: Bridge,
+    /// Number of changes so far, and at which one each track changed last.
+    version: u64,
+    stamps: Vec<u64>,
+    /// Ticks that people spend in patches of several.
+    company: usize,
+}
+
+/// Instances of a change have numbers from here on, counted downwards, until it is made.
+const PROVISIONAL: u32 = 1 << 31;
+
+fn is_provisional(instance: u32) -> bool {
+    (PROVISIONAL..NO_INSTANCE).contains(&instance)
 }
 
 /// Pieces `from..to` of a track.
@@ -41,12 +58,23 @@ pub(super) struct Window {
     pub to: usize,
 }
 
-/// What undoes a change: pieces taken out, pieces put in, tracks as they were.
-#[derive(Default)]
-pub(super) struct Undo {
-    hidden: Vec<PieceId>,
-    added: Vec<PieceId>,
-    tracks: Vec<(TrackId, Vec<PieceId>)>,
+/// A change to the tiling, worked out but not made: pieces that go, pieces that come, and whose they are.
+pub(super) struct Change {
+    /// The version of the tiling it was worked out for.
+    pub version: u64,
+    /// Pieces that go.
+    pub hidden: Vec<PieceId>,
+    /// Pieces that come. Those of one instance share a number; it is replaced.
+    pub pieces: Vec<Piece>,
+    /// All pieces of the people who change, placed or to come.
+    pub tracks: Vec<(TrackId, Vec<PieceId>)>,
+}
+
+impl Change {
+    /// How many people it adds.
+    pub fn newcomers(&self) -> usize {
+        self.tracks.iter().filter(|t| t.0 == NEWCOMER).count()
+    }
 }
 
 impl<'a> Tracks<'a> {
@@ -59,7 +87,9 @@ impl<'a> Tracks<'a> {
             tracks: vec![],
             owners: vec![],
             next_instance: 0,
-            bridge: Bridge::default(),
+            version: 0,
+            stamps: vec![],
+            company: 0,
         }
     }
 
@@ -70,74 +100,32 @@ impl<'a> Tracks<'a> {
 
     /// Number of people in the piece's patch.
     pub fn people_of(&self, id: PieceId) -> usize {
-        let role = &self.library.roles[self.piece(id).role as usize];
-        self.library.set.kinds[role.kind as usize].people()
+        self.library.people_of(self.piece(id).role)
     }
 
     /// The port at which piece `index` of `track` begins; past the last piece, the port at which the track ends.
     pub fn port(&self, track: TrackId, index: usize) -> Port {
         let pieces = &self.tracks[track];
-        let roles = &self.library.roles;
         match pieces.get(index) {
-            Some(&id) => {
-                let p = self.piece(id);
-                Port { at: p.entry(), tick: p.begin, group: roles[p.role as usize].entry_group }
-            }
-            None => {
-                let p = self.piece(*pieces.last().expect("tracks are never empty"));
-                Port { at: p.exit(), tick: p.end, group: roles[p.role as usize].exit_group }
-            }
+            Some(&id) => self.library.entry_of(self.piece(id)),
+            None => self.library.exit_of(self.piece(*pieces.last().expect("tracks are never empty"))),
         }
     }
 
-    /// A new instance number.
-    pub fn new_instance(&mut self) -> u32 {
-        self.next_instance += 1;
-        self.next_instance - 1
+    /// The instance of several people that ends where piece `index` of a track begins.
+    pub fn company_before(&self, track: TrackId, index: usize) -> u32 {
+        index.checked_sub(1).map_or(NO_INSTANCE, |before| self.company_after(track, before))
     }
 
-    /// Searches a chain (see [`Bridge::search`]) among all bodies now shown.
-    pub fn search(&mut self, from: Port, goal: Goal, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Vec<Piece>> {
-        let view = View { library: self.library, domain: self.domain, occupancy: &self.occupancy };
-        self.bridge.search(view, from, goal, taste, rng)
+    /// The instance of several people that piece `index` of a track is of.
+    pub fn company_after(&self, track: TrackId, index: usize) -> u32 {
+        let piece = self.tracks[track].get(index).filter(|&&id| self.people_of(id) > 1);
+        piece.map_or(NO_INSTANCE, |&id| self.piece(id).instance)
     }
 
-    /// True if `piece` could be put in now.
-    pub fn is_free(&self, piece: &Piece) -> bool {
-        self.occupancy.is_free(self.library, self.domain, piece)
-    }
-
-    /// Puts a piece in; one without an instance gets one of its own.
-    pub fn add(&mut self, mut piece: Piece, undo: &mut Undo) -> PieceId {
-        if piece.instance == NO_INSTANCE {
-            piece.instance = self.new_instance();
-        }
-        let id = self.occupancy.insert(piece);
-        undo.added.push(id);
-        id
-    }
-
-    /// Puts a chain in.
-    pub fn add_chain(&mut self, chain: Vec<Piece>, undo: &mut Undo) -> Vec<PieceId> {
-        chain.into_iter().map(|piece| self.add(piece, undo)).collect()
-    }
-
-    /// Takes a piece out for the time being.
-    pub fn hide(&mut self, id: PieceId, undo: &mut Undo) {
-        self.occupancy.hide(id);
-        undo.hidden.push(id);
-    }
-
-    /// Gives a track other pieces.
-    pub fn set_track(&mut self, track: TrackId, pieces: Vec<PieceId>, undo: &mut Undo) {
-        self.own(track, &pieces);
-        undo.tracks.push((track, std::mem::replace(&mut self.tracks[track], pieces)));
-    }
-
-    /// Adds a person.
-    pub fn push_track(&mut self, pieces: Vec<PieceId>) {
-        self.own(self.tracks.len(), &pieces);
-        self.tracks.push(pieces);
+    /// The tiling as searches see it.
+    pub fn view(&self) -> View<'_> {
+        View::new(self.library, self.domain, &self.occupancy)
     }
 
     /// The person a piece belongs to.
@@ -145,31 +133,95 @@ impl<'a> Tracks<'a> {
         self.owners[id as usize]
     }
 
-    fn own(&mut self, track: TrackId, pieces: &[PieceId]) {
-        for &id in pieces {
+    /// Number of changes so far.
+    pub fn version(&self) -> u64 {
+        self.version
+    }
+
+    /// The people who changed after a version.
+    pub fn changed_since(&self, version: u64) -> Vec<bool> {
+        self.stamps.iter().map(|&stamp| stamp > version).collect()
+    }
+
+    /// Makes a change if nothing that was changed since it was worked out is in its way; else all is as it was.
+    pub fn apply(&mut self, change: Change) -> bool {
+        let Change { version, hidden, pieces, tracks } = change;
+        if tracks.iter().any(|&(t, _)| t != NEWCOMER && self.stamps[t] > version) {
+            return false;
+        }
+        hidden.iter().for_each(|&id| self.occupancy.hide(id));
+        let Some(ids) = self.insert(pieces) else {
+            hidden.iter().rev().for_each(|&id| self.occupancy.show(id));
+            return false;
+        };
+        self.company -= self.company_of(&hidden);
+        self.company += self.company_of(&ids);
+        hidden.iter().for_each(|&id| self.occupancy.forget(id));
+        self.version += 1;
+        for (track, mut pieces) in tracks {
+            let sketched = pieces.iter_mut().filter(|id| Sketch::is_sketched(**id));
+            sketched.for_each(|id| *id = ids[Sketch::index(*id)]);
+            self.set(track, pieces);
+        }
+        true
+    }
+
+    /// Puts pieces in, each tested against all that are there; `None` and nothing is changed if one is not free.
+    fn insert(&mut self, pieces: Vec<Piece>) -> Option<Vec<PieceId>> {
+        let mut ids = Vec::with_capacity(pieces.len());
+        let mut numbers: Vec<(u32, u32)> = Vec::new();
+        for mut piece in pieces {
+            piece.instance = self.number(&mut numbers, piece.instance);
+            for instance in [&mut piece.company.from, &mut piece.company.to] {
+                if is_provisional(*instance) {
+                    *instance = self.number(&mut numbers, *instance);
+                }
+            }
+            if !self.view().is_free(&piece) {
+                for id in ids.into_iter().rev() {
+                    self.occupancy.hide(id);
+                    self.occupancy.forget(id);
+                }
+                return None;
+            }
+            ids.push(self.occupancy.insert(piece));
+        }
+        Some(ids)
+    }
+
+    /// The instance's number in the tiling; those of a change are its own. Patches of one person all come as the same.
+    fn number(&mut self, numbers: &mut Vec<(u32, u32)>, instance: u32) -> u32 {
+        if let Some(known) = numbers.iter().find(|n| n.0 == instance) {
+            return known.1;
+        }
+        let new = self.next_instance;
+        self.next_instance += 1;
+        if instance != NO_INSTANCE {
+            numbers.push((instance, new));
+        }
+        new
+    }
+
+    fn set(&mut self, track: TrackId, pieces: Vec<PieceId>) {
+        let track = if track == NEWCOMER {
+            self.tracks.push(vec![]);
+            self.stamps.push(0);
+            self.tracks.len() - 1
+        } else {
+            track
+        };
+        for &id in &pieces {
             if self.owners.len() <= id as usize {
                 self.owners.resize(id as usize + 1, 0);
             }
             self.owners[id as usize] = track;
         }
+        self.tracks[track] = pieces;
+        self.stamps[track] = self.version;
     }
 
-    /// Makes a change final.
-    pub fn commit(&mut self, undo: Undo) {
-        undo.hidden.into_iter().for_each(|id| self.occupancy.forget(id));
-    }
-
-    /// Takes a change back.
-    pub fn roll_back(&mut self, undo: Undo) {
-        for id in undo.added.into_iter().rev() {
-            self.occupancy.hide(id);
-            self.occupancy.forget(id);
-        }
-        undo.hidden.into_iter().rev().for_each(|id| self.occupancy.show(id));
-        for (track, pieces) in undo.tracks.into_iter().rev() {
-            self.own(track, &pieces);
-            self.tracks[track] = pieces;
-        }
+    fn company_of(&self, pieces: &[PieceId]) -> usize {
+        pieces.iter().filter(|&&id| self.people_of(id) > 1).map(|&id| self.piece(id).ticks_inside()).sum()
     }
 
     /// The window made wider by at least `ticks` on both sides, as far as time goes and up to the next patch of several
@@ -187,29 +239,6 @@ impl<'a> Tracks<'a> {
         Window { track, from, to }
     }
 
-    /// Takes the pieces of a window out.
-    pub fn hide_window(&mut self, window: Window, undo: &mut Undo) {
-        for i in window.from..window.to {
-            self.hide(self.tracks[window.track][i], undo);
-        }
-    }
-
-    /// Fills a window whose pieces are out with another chain; `None` if none was found.
-    pub fn bridge_window(&mut self, window: Window, taste: Taste, rng: &mut ChaCha8Rng, undo: &mut Undo) -> Option<()> {
-        let Window { track, from, to } = window;
-        let (begin, end) = (self.port(track, from), self.port(track, to));
-        let open = to == self.tracks[track].len();
-        let chain = match (from == 0, open) {
-            (_, true) => self.search(begin, Goal::Until(self.domain.horizon), taste, rng)?,
-            (true, false) => self.search(end, Goal::Since(0), taste, rng)?,
-            (false, false) => self.search(begin, Goal::Port(end), taste, rng)?,
-        };
-        let way = self.add_chain(chain, undo);
-        let pieces = [&self.tracks[track][..from], &way, &self.tracks[track][to..]].concat();
-        self.set_track(track, pieces, undo);
-        Some(())
-    }
-
     /// Index of the piece a track is in at `tick`.
     pub fn index_at(&self, track: TrackId, tick: i32) -> usize {
         self.tracks[track].partition_point(|&id| self.piece(id).end <= tick)
@@ -225,15 +254,30 @@ impl<'a> Tracks<'a> {
         self.piece(self.tracks[track][self.index_at(track, tick)]).state(tick)
     }
 
+    /// The ticks that a window spans.
+    pub fn span(&self, window: Window) -> Range<i32> {
+        self.port(window.track, window.from).tick..self.port(window.track, window.to).tick
+    }
+
+    /// Index of the piece of a track that is in an instance.
+    pub fn index_in(&self, track: TrackId, instance: u32) -> Option<usize> {
+        self.tracks[track].iter().position(|&id| self.piece(id).instance == instance)
+    }
+
     /// The people as baking wants them.
     pub fn chains(&self) -> Chains<'_> {
         let Self { library, domain, occupancy, tracks, .. } = self;
         Chains { library, domain, occupancy, lists: tracks }
     }
 
+    /// Ticks that people spend in patches of two or more.
+    pub fn company(&self) -> usize {
+        self.company
+    }
+
     /// Share of the people's time inside patches of two or more.
     pub fn multi_person_share(&self) -> f32 {
-        self.chains().multi_person_share()
+        self.company as f32 / (self.tracks.len() * self.domain.horizon as usize).max(1) as f32
     }
 
     /// Number of instances.

@@ -6,7 +6,9 @@ use super::super::bake::Chains;
 use super::super::bridge::Port;
 use super::super::domain::Domain;
 use super::super::library::Library;
-use super::super::occupancy::{Occupancy, Piece, PieceId, depth};
+use super::super::occupancy::{Occupancy, PieceId};
+use super::super::piece::{Piece, depth};
+use super::super::view::View;
 use super::super::outcome::{Phase, Progress};
 use super::anneal::energy;
 use super::ports::{ENTRY, EXIT, NONE, PortId, Ports, Reach};
@@ -96,6 +98,10 @@ impl<'a> Patchwork<'a> {
             filled: 0,
             ports: Ports::new(domain, library.set.groups.len()),
         }
+    }
+
+    fn view(&self) -> View<'_> {
+        View::new(self.library, self.domain, &self.occupancy)
     }
 
     /// N_c of equation 6.
@@ -235,7 +241,7 @@ impl<'a> Patchwork<'a> {
         let Some(new) = self.new_pieces(proposal) else { return false };
         let Some(changed) = self.adjacent_pieces(proposal) else { return false };
         changed.iter().for_each(|(id, _)| self.occupancy.hide(*id));
-        let clear = |p: &Piece| self.occupancy.is_free(self.library, self.domain, p);
+        let clear = |p: &Piece| self.view().is_free(p);
         if !new.iter().all(clear) || !changed.iter().all(|(_, p)| clear(p)) {
             changed.iter().for_each(|(id, _)| self.occupancy.show(*id));
             return false;
@@ -245,7 +251,7 @@ impl<'a> Patchwork<'a> {
         let old = changed.iter().map(|(id, _)| *id).collect::<Vec<_>>();
         let mut fits = true;
         for (id, piece) in changed.into_iter().map(|(id, p)| (Some(id), p)).chain(new.into_iter().map(|p| (None, p))) {
-            if !self.occupancy.is_free(self.library, self.domain, &piece) {
+            if !self.view().is_free(&piece) {
                 fits = false;
                 break;
             }

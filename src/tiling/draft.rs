@@ -1,0 +1,146 @@
+//! A draft: a change to the tiling while it is worked out. It reads the tiling and writes on a desk of its own, so that
+//! many can be worked out side by side; whether one can still be made is seen when it is applied.
+
+use rand_chacha::ChaCha8Rng;
+
+use super::bridge::{Bridge, Goal, NO_INSTANCE, Port, Taste};
+use super::occupancy::PieceId;
+use super::piece::{Company, Piece};
+use super::sketch::{Mark, Sketch};
+use super::tracks::{Change, NEWCOMER, TrackId, Tracks, Window};
+use super::view::View;
+
+/// What working out a change takes, used again and again.
+#[derive(Default)]
+pub(super) struct Desk {
+    sketch: Sketch,
+    bridge: Bridge,
+}
+
+/// A change in the making.
+pub(super) struct Draft<'a> {
+    /// The tiling as it is.
+    pub base: &'a Tracks<'a>,
+    desk: &'a mut Desk,
+    tracks: Vec<(TrackId, Vec<PieceId>)>,
+    instances: u32,
+}
+
+impl<'a> Draft<'a> {
+    /// No change.
+    pub fn new(base: &'a Tracks<'a>, desk: &'a mut Desk) -> Self {
+        desk.sketch.take();
+        Self { base, desk, tracks: vec![], instances: 0 }
+    }
+
+    /// Forgets everything.
+    pub fn restart(&mut self) {
+        self.desk.sketch.take();
+        self.tracks.clear();
+    }
+
+    /// The change as it is now.
+    pub fn finish(mut self) -> Change {
+        let (hidden, pieces) = self.desk.sketch.take();
+        Change { version: self.base.version(), hidden, pieces, tracks: std::mem::take(&mut self.tracks) }
+    }
+
+    /// How far it is.
+    pub fn mark(&self) -> Mark {
+        self.desk.sketch.mark()
+    }
+
+    /// Back to how far it was, when no track had been set since.
+    pub fn rewind(&mut self, mark: Mark) {
+        self.desk.sketch.rewind(mark);
+    }
+
+    /// The tiling with the change made.
+    pub fn view(&self) -> View<'_> {
+        View { sketch: &self.desk.sketch, ..self.base.view() }
+    }
+
+    /// A piece.
+    pub fn piece(&self, id: PieceId) -> &Piece {
+        self.view().piece(id)
+    }
+
+    /// The pieces of a person in the making.
+    pub fn track(&self, track: TrackId) -> &[PieceId] {
+        let set = self.tracks.iter().rev().find(|t| t.0 == track);
+        set.map_or(&self.base.tracks[track], |t| &t.1)
+    }
+
+    /// A number for the pieces of a patch of several people.
+    pub fn new_instance(&mut self) -> u32 {
+        self.instances += 1;
+        NO_INSTANCE - self.instances
+    }
+
+    /// Searches a chain (see [`Bridge::search`]) among all bodies now seen.
+    pub fn search(
+        &mut self,
+        from: Port,
+        goal: Goal,
+        company: Company,
+        taste: Taste,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Vec<PieceId>> {
+        let view = View { sketch: &self.desk.sketch, ..self.base.view() };
+        let chain = self.desk.bridge.search(view, from, goal, company, taste, rng)?;
+        Some(chain.into_iter().map(|piece| self.add(piece)).collect())
+    }
+
+    /// Puts a piece in.
+    pub fn add(&mut self, piece: Piece) -> PieceId {
+        self.desk.sketch.add(piece)
+    }
+
+    /// Puts the pieces of a patch of several people in, all or none of them.
+    pub fn add_patch(&mut self, parts: impl IntoIterator<Item = (u32, Port)>) -> Option<Vec<PieceId>> {
+        let instance = self.new_instance();
+        let (mark, mut ids) = (self.mark(), Vec::new());
+        for (role, entry) in parts {
+            let piece = Piece::rigid(self.base.library, self.base.domain, role, instance, entry.at, entry.tick);
+            if !self.view().is_free(&piece) {
+                self.rewind(mark);
+                return None;
+            }
+            ids.push(self.add(piece));
+        }
+        Some(ids)
+    }
+
+    /// Takes out the pieces of a window.
+    pub fn hide(&mut self, window: Window) {
+        let ids = &self.base.tracks[window.track][window.from..window.to];
+        ids.iter().for_each(|&id| self.desk.sketch.hide(id));
+    }
+
+    /// Gives a person other pieces.
+    pub fn set_track(&mut self, track: TrackId, pieces: Vec<PieceId>) {
+        self.tracks.push((track, pieces));
+    }
+
+    /// Adds a person.
+    pub fn push_track(&mut self, pieces: Vec<PieceId>) {
+        self.tracks.push((NEWCOMER, pieces));
+    }
+
+    /// Fills a window whose pieces are out with another chain; `None` if none was found.
+    pub fn bridge_window(&mut self, window: Window, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+        let Window { track, from, to } = window;
+        let (begin, end) = (self.base.port(track, from), self.base.port(track, to));
+        let open = to == self.base.tracks[track].len();
+        let company = Company { from: self.base.company_before(track, from), to: self.base.company_after(track, to) };
+        let (begin, goal) = match (from == 0, open) {
+            (_, true) => (begin, Goal::Until(self.base.domain.horizon)),
+            (true, false) => (end, Goal::Since(0)),
+            (false, false) => (begin, Goal::Port(end)),
+        };
+        let way = self.search(begin, goal, company, taste, rng)?;
+        let pieces = &self.base.tracks[track];
+        self.set_track(track, [&pieces[..from], &way, &pieces[to..]].concat());
+        Some(())
+    }
+}
