@@ -15,7 +15,7 @@ from statistics import median
 from rich.table import Table
 
 from crowdquilt import check, motion, patch, refine, samples
-from crowdquilt._core import PatchSet, Scene, tile
+from crowdquilt._core import PatchSet, Scene, measure_patches, measure_poses, measure_replay, measure_street, tile
 
 PAPER = "Hyun et al. 2013, figure 7: Static, 907 patches, 2.93 GHz Core i7"
 Say = Callable[[str], None]
@@ -175,7 +175,63 @@ def public_readers() -> dict[str, Callable[[Path], int]]:
     return readers
 
 
-AREAS: dict[str, Callable[[int, Say], list[Row]]] = {"motion": captures, "tiling": tiling}
+CROWD_PATCHES = "Yersin et al. 2009, section 6"
+TARGET = "what we set out to reach"
+
+
+def worlds(seeds: int, say: Say) -> list[Row]:
+    """How long crowd patches take, and a walk through 10 km of endless street; the paper: 60 ms for a patch."""
+    rows = []
+    for name, walkers, reference in (("patch-create", 16, 60.0), ("patch-create-dense", 30, None)):
+        typical, most_of_all, most, free = measure_patches(walkers, 60 * seeds, False)
+        say(f"world: {name}: {typical:.2f} ms, {free:.1%} free of faults")
+        title = f"{name}: {walkers} in and out, median"
+        rows.append(row("world", title, typical, "ms", reference, CROWD_PATCHES if reference else ""))
+        rows.append(row("world", f"{name}: 95 %", most_of_all, "ms", 3.0 if walkers == 16 else None, TARGET))
+        rows.append(row("world", f"{name}: slowest", most, "ms"))
+        rows.append(row("world", f"{name}: share without any fault", free))
+    typical, _, _, free = measure_patches(16, 20 * seeds, True)
+    rows.append(row("world", "the paper's particles here: median", typical, "ms"))
+    rows.append(row("world", "the paper's particles here: share without any fault", free))
+    made, resident, typical, _, most = measure_street(10_000)
+    say(f"world: endless-street: {made} patches, {most:.2f} ms at most")
+    rows.append(row("world", "endless-street: 10 km, patches made", made))
+    rows.append(row("world", "endless-street: patches kept at most", resident))
+    rows.append(row("world", "endless-street: frame with a new patch, median", typical, "ms"))
+    rows.append(row("world", "endless-street: frame with a new patch, slowest", most, "ms", 16.0, TARGET))
+    return rows
+
+
+def stage(seeds: int, say: Say) -> list[Row]:
+    """A million people played on one core; the paper: 3,700 people at 30 to 35 frames per second, drawn."""
+    rows = []
+    steering = "steering, best of those measured: 1.5 M agent-steps/s"
+    with tempfile.TemporaryDirectory() as folder:
+        samples.write(Path(folder), 1)
+        people, nanos = measure_poses(patch.cut(Path(folder)))
+    say(f"stage: replay-poses: {nanos:.0f} ns a body")
+    rows.append(
+        row("stage", "replay-poses: a full body (22 joints)", nanos / 1e3, "us", 1.06, "ozz-animation, 31 joints")
+    )
+    for name, kinds, unique in (("1,000 shared kinds", 1000, False), ("unique patches", 1000, True)):
+        runs = [measure_replay(1_000_000, kinds, unique) for _ in range(max(1, seeds // 2))]
+        people, _, memory = runs[0][:3]
+        early, late, single = (median(run[i] for run in runs) for i in (3, 4, 5))
+        say(f"stage: {name}: {early / 1e6:.0f} M root samples/s")
+        rows.append(row("stage", f"replay-roots, {name}: at 1 s", early / 1e6, "M/s", 1.5, steering))
+        rows.append(row("stage", f"replay-roots, {name}: at 1 h", late / 1e6, "M/s", 1.5, steering))
+        rows.append(row("stage", f"{name}: people", people))
+        rows.append(row("stage", f"{name}: in memory", memory / 1e6, "MB", 600.0 if unique else 64.0, TARGET))
+        rows.append(row("stage", f"random-access, {name}: a patch at any time", single, "us"))
+    return rows
+
+
+AREAS: dict[str, Callable[[int, Say], list[Row]]] = {
+    "motion": captures,
+    "tiling": tiling,
+    "world": worlds,
+    "stage": stage,
+}
 
 
 def table(rows: list[Row]) -> Table:
