@@ -14,10 +14,10 @@ from statistics import median
 
 from rich.table import Table
 
-from crowdquilt import check, motion, patch, refine, samples
+from crowdquilt import motion, patch, refine, samples
 from crowdquilt._core import PatchSet, Scene, measure_patches, measure_poses, measure_replay, measure_street, tile
+from crowdquilt.bench_tiling import PAPER, STATIC, growth, static
 
-PAPER = "Hyun et al. 2013, figure 7: Static, 907 patches, 2.93 GHz Core i7"
 Say = Callable[[str], None]
 
 
@@ -41,41 +41,20 @@ def row(area: str, name: str, ours: float, unit: str = "", reference: float | No
 
 
 def tiling(seeds: int, say: Say) -> list[Row]:
-    """The demo's scene (12 x 12 m, 20 s) beside the densest static scene of the paper; medians over the seeds."""
+    """The paper's static scenes, denser ones and larger ones."""
     with tempfile.TemporaryDirectory() as folder:
         samples.write(Path(folder), 1)
         patches = patch.cut(Path(folder))
+    figures = [figure for scene in STATIC for figure in static(scene, patches, seeds, say)]
+    figures += growth(patches, say)
     kinds = row("tiling", "kinds to choose from", len(patches), "", 43, PAPER)
+    source = {True: PAPER, False: ""}
     return [
         kinds,
-        *tiling_rows(patches, "engine", "", seeds, say),
-        *tiling_rows(patches, "paper", "Algorithms 1 and 2 here: ", seeds, say),
-    ]
-
-
-def tiling_rows(patches: PatchSet, method: str, prefix: str, seeds: int, say: Say) -> list[Row]:
-    """The rows of one method; its crowds are checked like any other."""
-    runs = []
-    for seed in range(1, seeds + 1):
-        outcome = tile(Scene.demo(), patches, seed=seed, method=method)
-        perfect = outcome.status == "perfect" and check.check(outcome.crowd).ok
-        runs.append((outcome, check.summary(outcome.crowd), perfect))
-        say(f"tiling: {method}, seed {seed} of {seeds}: {outcome.status} in {outcome.solve_secs:.2f} s")
-
-    def add(name: str, ours: float, unit: str = "", reference: float | None = None) -> Row:
-        return row("tiling", prefix + name, float(ours), unit, reference, PAPER if reference is not None else "")
-
-    def typical(name: str) -> float:
-        return float(median(getattr(summary, name) for _, summary, _ in runs))
-
-    return [
-        add("solve time", median(run.solve_secs for run, _, _ in runs), "s", 103 * 60),
-        add("slowest solve", max(run.solve_secs for run, _, _ in runs), "s", 103 * 60),
-        add("characters", typical("characters"), "", 70),
-        add("patches placed", typical("instances"), "", 907),
-        add("share of time in patches of two or more", typical("multi_person_share")),
-        add("danglings, all runs", sum(summary.danglings for _, summary, _ in runs), "", 0),
-        add(f"perfect and checked, of {seeds}", sum(ok for _, _, ok in runs)),
+        *(
+            row("tiling", f"{f.row}: {f.name}", float(f.value), f.unit, f.reference, source[f.reference is not None])
+            for f in figures
+        ),
     ]
 
 
