@@ -19,6 +19,7 @@ mod samples;
 mod signals;
 mod stage;
 mod tiling;
+mod wishes;
 mod world;
 
 #[pymodule]
@@ -46,7 +47,7 @@ mod _core {
     #[pymodule_export]
     use super::signals::{PairSignals, TakeSignals};
     #[pymodule_export]
-    use super::stage::{Crowd, Fragment, Prop};
+    use super::stage::{Crowd, Fragment, Obstacle, Prop};
     #[pymodule_export]
     use super::tiling::{Outcome, Progress, Scene, tile};
     #[pymodule_export]

@@ -131,6 +131,47 @@ impl Crowd {
     }
 }
 
+/// What people stay out of: a prism that stands or moves, of any height or so low that one can jump over it.
+#[pyclass(frozen, module = "crowdquilt")]
+pub struct Obstacle(crowdquilt::geom::Obstacle);
+
+#[pymethods]
+impl Obstacle {
+    /// Height in metres; None is over all heads.
+    #[getter]
+    fn height(&self) -> Option<f32> {
+        self.0.height
+    }
+
+    /// Whether it moves.
+    #[getter]
+    fn moves(&self) -> bool {
+        !self.0.path.is_empty()
+    }
+
+    /// (n, 4): its way-points as seconds, x, z, heading in radians; none if it stands.
+    #[getter]
+    fn path<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let rows = self.0.path.iter().flat_map(|w| [w.secs, w.position.x, w.position.y, w.heading]);
+        table(py, rows.collect(), 4)
+    }
+
+    /// (corners, 2): its outline on the ground at a time, as x, z in metres.
+    fn at<'py>(&self, py: Python<'py>, secs: f32) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        points2(py, &self.0.outline_at(secs).points)
+    }
+
+    fn __repr__(&self) -> String {
+        let height = self.0.height.map_or("None".into(), |h| h.to_string());
+        format!("Obstacle(height={height}, moves={})", if self.moves() { "True" } else { "False" })
+    }
+}
+
+/// The obstacles of a scene or crowd.
+pub fn obstacles(all: &[crowdquilt::geom::Obstacle]) -> Vec<Obstacle> {
+    all.iter().cloned().map(Obstacle).collect()
+}
+
 type Things<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray2<f32>>);
 type People<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray3<f32>>);
 
@@ -188,10 +229,10 @@ impl Crowd {
         points2(py, &self.0.domain.region.points)
     }
 
-    /// One (corners, 2) array for each obstacle.
+    /// What everybody stays out of.
     #[getter]
-    fn obstacles<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f32>>>> {
-        self.0.domain.obstacles.iter().map(|o| points2(py, &o.outline_at(0.0).points)).collect()
+    fn obstacles(&self) -> Vec<Obstacle> {
+        obstacles(&self.0.domain.obstacles)
     }
 
     /// Names of the canonical skeleton's joints.

@@ -12,7 +12,8 @@ use crate::error::{CrowdquiltError, run, to_python};
 use crate::numbers::points2;
 use crate::patch::PatchSet;
 use crate::progress::watched;
-use crate::stage::Crowd;
+use crate::stage::{Crowd, Obstacle, obstacles};
+use crate::wishes;
 
 /// What to tile: a region with obstacles, a time, and wishes.
 #[pyclass(frozen, module = "crowdquilt")]
@@ -38,11 +39,13 @@ impl Scene {
         Self(core::Scene::demo())
     }
 
-    /// The same scene with other wishes: number of people, share of their time together (0 to 1), seconds.
-    #[pyo3(signature = (*, characters=None, interaction=None, duration_secs=None))]
+    /// The same scene with other wishes: number of people, or how many per square metre; share of their time together
+    /// (0 to 1); seconds.
+    #[pyo3(signature = (*, characters=None, density=None, interaction=None, duration_secs=None))]
     fn replace(
         &self,
         characters: Option<usize>,
+        density: Option<f32>,
         interaction: Option<f32>,
         duration_secs: Option<f32>,
     ) -> PyResult<Self> {
@@ -55,6 +58,12 @@ impl Scene {
                 return bad("characters", &format!("1 to 1000000, found {n}"));
             }
             scene.characters = n;
+        }
+        if let Some(density) = density {
+            if !(density > 0.0 && density <= 10.0) || characters.is_some() {
+                return bad("density", &format!("more than 0 and at most 10, and no characters, found {density}"));
+            }
+            scene.characters = scene.people_at(density);
         }
         if let Some(share) = interaction {
             if !(0.0..=1.0).contains(&share) {
@@ -77,10 +86,25 @@ impl Scene {
         points2(py, &self.0.region.points)
     }
 
-    /// One (corners, 2) array for each obstacle.
+    /// What everybody stays out of.
     #[getter]
-    fn obstacles<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray2<f32>>>> {
-        self.0.obstacles.iter().map(|o| points2(py, &o.outline_at(0.0).points)).collect()
+    fn obstacles(&self) -> Vec<Obstacle> {
+        obstacles(&self.0.obstacles)
+    }
+
+    /// The nodes of a grid over the region, `cell` metres apart: how many columns, and (n, 2) places, row by row.
+    fn nodes<'py>(&self, py: Python<'py>, cell: f32) -> PyResult<(usize, Bound<'py, PyArray2<f32>>)> {
+        let (columns, nodes) = wishes::nodes(&self.0, cell)?;
+        Ok((columns, points2(py, &nodes)?))
+    }
+
+    /// The same scene with one more factor exp(-f / sigma) of the preference function; see `crowdquilt.tiling.prefer`.
+    ///
+    /// f is a table of float32, not negative: (rows, columns) over the ground or (headings, rows, columns) with nodes
+    /// `step` metres apart, (n,) over time with values `step` seconds apart, or pairs of a kind's name and its value.
+    #[pyo3(signature = (table, *, step=1.0, sigma=1.0))]
+    fn with_table(&self, table: wishes::Table, step: f32, sigma: f32) -> PyResult<Self> {
+        wishes::with_table(&self.0, table, step, sigma).map(Self)
     }
 
     /// Length in seconds.

@@ -5,7 +5,8 @@
 use glam::Vec2;
 
 use super::acting::{Pulse, Sight};
-use super::footsteps::{Base, Feet, Placement, Stance};
+use super::flight::Flight;
+use super::footsteps::{Base, Feet, Hop, Placement, Stance};
 use super::gait::{Gait, PhaseTrack};
 use super::gesture::Reach;
 use super::path::{Path, PathPlan};
@@ -36,7 +37,8 @@ pub(super) struct Actor {
     pub gazes: Vec<(Span, Sight)>,
     pub ports: Vec<(i32, String)>,
     anchor: (i32, Ground),
-    walking: Option<(Foot, Gait)>,
+    pub walking: Option<(Foot, Gait)>,
+    pub flights: Vec<Flight>,
     /// Whether a box is in the hands, which makes other pose groups.
     pub carrying: bool,
 }
@@ -55,6 +57,7 @@ impl Actor {
             toe_off: 2.0 * NEVER,
             strike_pitch: 0.0,
             off_pitch: 0.0,
+            hop: None,
             place: Ground::IDENTITY,
         };
         let mut actor = Self {
@@ -68,6 +71,7 @@ impl Actor {
             ports: Vec::new(),
             anchor: (0, Ground::IDENTITY),
             walking: None,
+            flights: Vec::new(),
             carrying: false,
         };
         actor.mark();
@@ -262,12 +266,19 @@ impl Actor {
         stances.last_mut().expect("a stance").placement.at = secs(origin);
     }
 
-    fn lift(&mut self, foot: Foot, [unload, heel_off, toe_off]: [f32; 3], off_pitch: f32) {
+    /// The last stance planned of a foot ends.
+    pub fn lift(&mut self, foot: Foot, [unload, heel_off, toe_off]: [f32; 3], off_pitch: f32) {
         let stance = self.feet[foot as usize].stances.last_mut().expect("a stance");
         (stance.unload, stance.heel_off, stance.toe_off, stance.off_pitch) = (unload, heel_off, toe_off, off_pitch);
     }
 
-    fn land(
+    /// The swing after the last stance planned of a foot goes high.
+    pub fn hop(&mut self, foot: Foot, hop: Hop) {
+        self.feet[foot as usize].stances.last_mut().expect("a stance").hop = Some(hop);
+    }
+
+    /// A new stance of a foot.
+    pub fn land(
         &mut self,
         foot: Foot,
         base: Base,
@@ -277,10 +288,22 @@ impl Actor {
         strike_pitch: f32,
     ) {
         let placement = Placement { base, at, offset };
-        let place = Ground::IDENTITY;
+        let (place, hop) = (Ground::IDENTITY, None);
         let (unload, heel_off, toe_off, off_pitch) = (NEVER, NEVER, 2.0 * NEVER, 0.0);
-        let stance =
-            Stance { foot, placement, strike, flat, loaded, unload, heel_off, toe_off, strike_pitch, off_pitch, place };
+        let stance = Stance {
+            foot,
+            placement,
+            strike,
+            flat,
+            loaded,
+            unload,
+            heel_off,
+            toe_off,
+            strike_pitch,
+            off_pitch,
+            hop,
+            place,
+        };
         self.feet[foot as usize].stances.push(stance);
     }
 }
@@ -289,7 +312,7 @@ impl Actor {
 const START: i32 = 30;
 const STOP: i32 = 25;
 
-fn strike_pitch(speed: f32) -> f32 {
+pub(super) fn strike_pitch(speed: f32) -> f32 {
     (6.0 + 11.0 * (speed / 1.3)).to_radians()
 }
 

@@ -52,8 +52,94 @@ pub(super) struct Stance {
     /// How far the toes point up when the heel strikes, and the heel is up when the toes leave.
     pub strike_pitch: f32,
     pub off_pitch: f32,
+    /// How high the foot goes afterwards, if not as in a walk.
+    pub hop: Option<Hop>,
     /// Filled in by [`Feet::place`]: the flat ankle's ground point and the foot's heading.
     pub place: Ground,
+}
+
+/// The swing of a foot that is drawn up high.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hop {
+    /// How much higher than in a walk the ball gets, metres.
+    pub height: f32,
+    /// Parts of the swing's time at which it begins to be higher, is highest, and is as in a walk again.
+    pub times: [f32; 3],
+    /// Rates at which it gets higher at first and lower at last, m/s.
+    pub rates: [f32; 2],
+    /// When the foot comes by the other; a jump off both feet has no such moment.
+    pub pass: Option<Pass>,
+}
+
+/// The moment at which a foot that is in the air comes by the other as it does in a walk.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pass {
+    /// When, seconds.
+    pub at: f32,
+    /// Half a cycle of the walk, seconds, and its speed.
+    pub half: f32,
+    pub speed: f32,
+    /// Filled in by [`Feet::place`]: where the ball is then, and how fast.
+    pub place: Vec2,
+    pub velocity: Vec2,
+}
+
+/// A walker's foot is in the air for this much of half a cycle.
+pub(super) const SWING: f32 = 0.74;
+/// The part of a walk's swing after which the foot comes by the other.
+const PASS: f32 = 0.42;
+
+impl Pass {
+    /// As [`travel`] has it of a walk's step, whose length is a cycle's.
+    fn settle(&mut self, path: &Path, foot: Foot) {
+        let step = 2.0 * self.speed * self.half;
+        let ahead = foothold(Base::Walk, foot).position.y + BALL.z + step * (travel(PASS) - 0.5);
+        let body = path.at(self.at);
+        self.place = body.apply(Vec2::new(1.2 * foothold(Base::Walk, foot).position.x, ahead));
+        let rate = (travel(PASS + 0.01) - travel(PASS - 0.01)) / 0.02 / (SWING * self.half);
+        self.velocity = body.turn().apply(Vec2::new(0.0, step * rate));
+    }
+}
+
+impl Hop {
+    /// How much higher than in a walk the ball is at a part of a swing of so many seconds.
+    fn height_at(&self, part: f32, span: f32) -> f32 {
+        let ([begin, top, end], [up, down]) = (self.times, self.rates);
+        if !(begin..end).contains(&part) {
+            return 0.0;
+        }
+        hermite(&[(begin, 0.0, up * span), (top, self.height, 0.0), (end, 0.0, down * span)], part)
+    }
+
+    /// The part of a walk's swing that has passed.
+    fn walked(&self, part: f32, begin: f32, span: f32) -> f32 {
+        let Some(pass) = self.pass else { return part };
+        let (pass, rate) = ((pass.at - begin) / span, self.rate(span));
+        let mut keys = vec![(0.0, 0.0, rate)];
+        slow(&mut keys, (pass, PASS), rate);
+        slow(&mut keys, (1.0, 1.0), rate);
+        hermite(&keys, part)
+    }
+
+    /// How much of a walk's swing passes per time when the foot leaves and comes down.
+    fn rate(&self, span: f32) -> f32 {
+        self.pass.map_or(1.0, |pass| span / (SWING * pass.half))
+    }
+}
+
+/// Keys from the last one to another, both passed at a rate; slower in between where there is time.
+fn slow(keys: &mut Vec<(f32, f32, f32)>, to: (f32, f32), rate: f32) {
+    let (at, value, _) = *keys.last().expect("a first key");
+    let (time, third) = (to.0 - at, (to.1 - value) / 3.0);
+    if rate * time > 4.5 * third {
+        let (mut ends, mut middle) = (0.0, 0.0);
+        for _ in 0..30 {
+            ends = 2.0 * third / (rate + middle);
+            middle = third / (time - 2.0 * ends);
+        }
+        keys.extend([(at + ends, value + third, middle), (to.0 - ends, to.1 - third, middle)]);
+    }
+    keys.push((to.0, to.1, rate));
 }
 
 /// A foot at one moment.
@@ -86,6 +172,9 @@ impl Feet {
         for s in &mut self.stances {
             let Placement { base, at, offset } = s.placement;
             s.place = path.at(at).then(offset).then(foothold(base, s.foot));
+            if let Some(pass) = s.hop.as_mut().and_then(|hop| hop.pass.as_mut()) {
+                pass.settle(path, s.foot);
+            }
         }
     }
 
@@ -134,11 +223,13 @@ fn planted(s: &Stance, t: f32, lift: f32) -> FootPose {
 
 fn swing(from: &Stance, to: &Stance, t: f32, body: Ground) -> FootPose {
     let span = to.strike - from.toe_off;
-    let u = (t - from.toe_off) / span;
+    let part = (t - from.toe_off) / span;
+    let u = from.hop.map_or(part, |hop| hop.walked(part, from.toe_off, span));
     let (start, goal) = (planted(from, from.toe_off, 0.0), planted(to, to.strike, 0.0));
     let (a, b) = (start.ankle + start.rotation * BALL, goal.ankle + goal.rotation * BALL);
-    let landing_rate = -2.0 * to.strike_pitch / (to.flat - to.strike).max(1e-3) * span;
-    let off_rate = -2.1 * from.off_pitch / (from.toe_off - from.heel_off).max(1e-3) * span;
+    let walk = span / from.hop.map_or(1.0, |hop| hop.rate(span));
+    let landing_rate = -2.0 * to.strike_pitch / (to.flat - to.strike).max(1e-3) * walk;
+    let off_rate = -2.1 * from.off_pitch / (from.toe_off - from.heel_off).max(1e-3) * walk;
     let pitch = swing_pitch(from.off_pitch, off_rate, to.strike_pitch, landing_rate, u);
     let drop = landing_rate * 0.17;
     let distance = (b - a).length();
@@ -152,10 +243,17 @@ fn swing(from: &Stance, to: &Stance, t: f32, body: Ground) -> FootPose {
             (1.0, b.y, drop.min(-0.06)),
         ],
         u,
-    );
+    ) + from.hop.map_or(0.0, |hop| hop.height_at(part, span));
     let travel = travel(u);
     let free = (std::f32::consts::PI * u).sin().powi(2);
     let mut ground = Vec2::new(a.x + (b.x - a.x) * travel, a.z + (b.z - a.z) * travel);
+    if let Some(pass) = from.hop.and_then(|hop| hop.pass) {
+        let (at, rate) = ((pass.at - from.toe_off) / span, pass.velocity * span);
+        // A foot that leaves high does not stay behind.
+        let quick = if from.hop.is_some_and(|hop| hop.rates[0] > 0.0) { 0.25 } else { 0.0 };
+        let through = |a: f32, p: f32, v: f32, b: f32| hermite(&[(0.0, a, quick * v), (at, p, v), (1.0, b, 0.0)], part);
+        ground = Vec2::new(through(a.x, pass.place.x, rate.x, b.x), through(a.z, pass.place.y, rate.y, b.z));
+    }
     if from.placement.base == Base::Walk || to.placement.base == Base::Walk {
         // A walker's foot comes by close to the other, wherever it is from and goes to.
         let mut beside = body.inverse().apply(ground);

@@ -11,7 +11,7 @@ use super::gait::{GaitPose, gait_pose};
 use super::gesture::{hanging, set_arm};
 use super::path::Path;
 use super::posture::{Body, Channel, Channels, side_sign};
-use super::timeline::{Wander, blur, lerp, signed, unit};
+use super::timeline::{Span, Wander, blur, lerp, signed, unit};
 use crate::geom::{Ground, Turn, wrap_angle};
 use crate::motion::{Clip, Foot, canonical, joint::*};
 
@@ -53,6 +53,7 @@ struct Frame {
     pelvis: Quat,
     hips: Vec2,
     height: f32,
+    airborne: f32,
 }
 
 /// Plays `actor` (number `me` of the take) over `end` frames of 30 per second; `paths` are everybody's.
@@ -137,8 +138,11 @@ fn prepare_frame(actor: &Actor, path: &Path, t: f32, speed: f32) -> Frame {
     let pelvis = Quat::from_rotation_y(at.heading + gait.pelvis_yaw + channels[Channel::PelvisYaw])
         * Quat::from_rotation_x(0.035 + gait.pelvis_pitch + channels[Channel::PelvisPitch])
         * Quat::from_rotation_z(gait.pelvis_roll + channels[Channel::PelvisRoll]);
-    let height = HIPS_HEIGHT - gait.drop + channels[Channel::HipsUp];
-    Frame { t, channels, gait, speed, feet, pelvis, hips: at.apply(local), height }
+    let flown: f32 = actor.flights.iter().map(|f| f.height(t)).sum();
+    let walks = 1.0 - actor.flights.iter().map(|f| Span(f.times).weight(t)).sum::<f32>();
+    let height = HIPS_HEIGHT - gait.drop * walks + channels[Channel::HipsUp] + flown;
+    let airborne = actor.flights.iter().map(|f| f.airborne(t)).sum();
+    Frame { t, channels, gait, speed, feet, pelvis, hips: at.apply(local), height, airborne }
 }
 
 /// Lowers the hips where a leg would not reach, beginning before and ending after, so that no knee snaps.
@@ -153,7 +157,7 @@ fn settle_heights(frames: &mut [Frame]) {
     }
 }
 
-/// The greatest height of the hips at which both feet are in reach.
+/// The greatest height of the hips at which both feet are in reach; as they are when nobody stands on them.
 fn highest(f: &Frame) -> f32 {
     let limit = STRETCH * (0.42 + 0.41);
     let over = |i: usize| {
@@ -162,7 +166,7 @@ fn highest(f: &Frame) -> f32 {
         let across = Vec2::new(f.hips.x + joint.x - ankle.x, f.hips.y + joint.z - ankle.z).length().min(limit * 0.98);
         ankle.y + (limit * limit - across * across).sqrt() - joint.y
     };
-    over(0).min(over(1))
+    over(0).min(over(1)) + f.airborne
 }
 
 fn pose(actor: &Actor, me: usize, paths: &[Path], f: &Frame, temper: &Temper) -> Body {

@@ -131,7 +131,8 @@ impl Crowd {
         let read = |(i, c)| arrays.character(i, c);
         let characters = header.characters.into_iter().enumerate().map(read).collect::<Result<Vec<_>>>()?;
         let props = props(header.props, &reader)?;
-        for (i, problem) in header.domain.obstacles.iter().enumerate().filter_map(|(i, o)| Some((i, o.problem()?))) {
+        let problem = |(i, o): (usize, &Obstacle)| Some((i, o.problem()?));
+        if let Some((i, problem)) = header.domain.obstacles.iter().enumerate().find_map(problem) {
             return Err(Error::invalid("crowd", format!("obstacle {i}"), problem));
         }
         let crowd =

@@ -12,6 +12,7 @@ use rustc_hash::FxHashSet;
 use super::domain::Spot;
 use super::library::{Closing, Library, Move, Span};
 use super::piece::{Company, Piece, Rigid};
+use super::prefer::Stay;
 use super::view::View;
 use crate::geom::{Ground, wrap_angle};
 use crate::motion::{FPS, MotionPath};
@@ -67,6 +68,9 @@ const WALL_ROOM: f32 = 0.3;
 const ASKEW_WEIGHT: f32 = 0.2;
 /// Cost factor of taking up and putting down.
 const LIFT_WEIGHT: f32 = 0.85;
+/// Cost factor of jumping over something and over nothing.
+const LEAP_OVER: f32 = 0.2;
+const LEAP_WEIGHT: f32 = 4.0;
 /// Cost of a box that lies about for a second.
 const CLUTTER_WEIGHT: f32 = 0.05;
 /// Below this mean speed a patch counts as standing, m/s.
@@ -213,7 +217,8 @@ impl Bridge {
         }
         let leaves_box = view.library.roles[role as usize].leaves_box();
         let (entry, begin) = self.entry(node);
-        if !leaves_box && !view.is_free_rigid(role, Rigid::new(view.library, role, entry, begin), self.company_of(node)) {
+        if !leaves_box && !view.is_free_rigid(role, Rigid::new(view.library, role, entry, begin), self.company_of(node))
+        {
             return false;
         }
         if !boxed {
@@ -254,9 +259,10 @@ impl Bridge {
             if !inside || self.seen.contains(&key(&at)) {
                 continue;
             }
-            let cost =
-                cost + step_cost(view, step, taste) * rng.random_range(0.85..1.2) + clutter(view, step, from.tick);
-            if let Some(left) = cost_left(&at, goal) {
+            let price = price(view, step, &at);
+            let effort = step_cost(view, step, taste) * leap_weight(view, step, &from, goal);
+            let cost = cost + effort * price * rng.random_range(0.85..1.2) + clutter(view, step, from.tick);
+            if let Some(left) = cost_left(&at, goal, price) {
                 let boxed = boxed || view.library.roles[step.role as usize].leaves_box();
                 self.push(Node { at, cost, parent: node, role: step.role, boxed }, cost + left);
             }
@@ -379,6 +385,23 @@ fn step_cost(view: View, step: &Move, taste: Taste) -> f32 {
     step.ticks as f32 / FPS * factor
 }
 
+/// Who jumps does it over something: cheap where there is an obstacle under the highest point, dear elsewhere.
+fn leap_weight(view: View, step: &Move, from: &Port, goal: Goal) -> f32 {
+    let role = &view.library.roles[step.role as usize];
+    let Some(frame) = role.leap else { return 1.0 };
+    let (entry, begin) = match goal {
+        Goal::Since(_) => (from.at.then(step.to), from.tick - step.ticks),
+        _ => (from.at, from.tick),
+    };
+    let place = entry.then(role.path.at(frame)).position;
+    if view.domain.is_over_obstacle(begin + frame as i32, place) { LEAP_OVER } else { LEAP_WEIGHT }
+}
+
+/// Equation 7: what a step costs more for leading where, when or which way nobody wants to be.
+fn price(view: View, step: &Move, to: &Port) -> f32 {
+    view.library.preference.price(view.library.roles[step.role as usize].kind, Stay::new(to.at, to.tick))
+}
+
 /// Cost of the time over which a step leaves a box lying about.
 fn clutter(view: View, step: &Move, tick: i32) -> f32 {
     let rests = &view.library.roles[step.role as usize].rests;
@@ -387,11 +410,11 @@ fn clutter(view: View, step: &Move, tick: i32) -> f32 {
     CLUTTER_WEIGHT * (before + after) as f32 / FPS
 }
 
-/// Estimated cost from `at` to the goal, in seconds; `None` if the goal is out of reach.
-fn cost_left(at: &Port, goal: Goal) -> Option<f32> {
+/// Estimated cost from `at` to the goal, in seconds, the time there costing `price`; `None` if the goal is out of reach.
+fn cost_left(at: &Port, goal: Goal, price: f32) -> Option<f32> {
     match goal {
-        Goal::Until(tick) => Some(TIME_WEIGHT * (tick - at.tick).max(0) as f32 / FPS),
-        Goal::Since(tick) => Some(TIME_WEIGHT * (at.tick - tick).max(0) as f32 / FPS),
+        Goal::Until(tick) => Some(price * TIME_WEIGHT * (tick - at.tick).max(0) as f32 / FPS),
+        Goal::Since(tick) => Some(price * TIME_WEIGHT * (at.tick - tick).max(0) as f32 / FPS),
         Goal::Port(to) => {
             let left = (to.tick - at.tick) as f32 / FPS;
             let distance = at.at.position.distance(to.at.position);

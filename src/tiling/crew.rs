@@ -54,6 +54,12 @@ impl<'a> Crew<'a> {
         found.into_iter().map(|change| change.is_some_and(&mut made)).collect()
     }
 
+    /// Works one change out in as many ways as are worked out at once, and makes the first that is found.
+    pub fn work_one(&mut self, propose: impl Fn(&mut Draft, &mut ChaCha8Rng) -> Option<()> + Sync) -> bool {
+        let version = self.tracks.version();
+        self.work(FEWEST, |_, draft, rng| propose(draft, rng), |tracks, _| tracks.version() == version).contains(&true)
+    }
+
     fn propose(
         &self,
         i: usize,

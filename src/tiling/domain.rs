@@ -96,6 +96,22 @@ impl Domain {
         self.is_within_walls(center, radius) && self.movers.iter().all(|m| m.is_clear(at, center, radius))
     }
 
+    /// A place over one of the low obstacles (which one: any number) at a tick, `aside` from its middle: each between -1
+    /// and 1 of its extent. `None` if there are none.
+    pub fn over_obstacle(&self, tick: i32, aside: Vec2, which: usize) -> Option<Vec2> {
+        let low = || self.movers.iter().filter(|m| m.height.is_finite());
+        let mover = low().nth(which.checked_rem(low().count())?)?;
+        let (low, high) = mover.outline.bounds();
+        let (place, turn) = mover.at(tick);
+        Some(place + turn.apply(aside * (high - low) * 0.5))
+    }
+
+    /// True if there is a low obstacle under a place at a tick.
+    pub fn is_over_obstacle(&self, tick: i32, place: Vec2) -> bool {
+        let low = self.movers.iter().filter(|m| m.height.is_finite());
+        low.into_iter().any(|m| !m.is_clear(Spot::ground(tick), place, 0.0))
+    }
+
     #[inline]
     fn is_within_walls(&self, center: Vec2, radius: f32) -> bool {
         // The nearest node; casts round towards zero.
@@ -142,11 +158,16 @@ impl Mover {
         }
     }
 
+    /// Where its middle is at a tick, and how it is turned.
+    fn at(&self, tick: i32) -> (Vec2, Turn) {
+        self.places[(tick.max(0) as usize).min(self.places.len() - 1)]
+    }
+
     fn is_clear(&self, at: Spot, center: Vec2, radius: f32) -> bool {
         if at.lift >= self.height {
             return true;
         }
-        let (place, turn) = self.places[(at.tick.max(0) as usize).min(self.places.len() - 1)];
+        let (place, turn) = self.at(at.tick);
         let (away, reach) = (center - place, self.radius + radius);
         if away.length_squared() >= reach * reach {
             return true;

@@ -12,14 +12,17 @@ use rand_chacha::ChaCha8Rng;
 use super::bake::{Chains, bake};
 use super::bridge::Taste;
 use super::crew::Crew;
+use super::demands::admitted;
 use super::domain::Domain;
 use super::draft::Draft;
 use super::enrich::enrich;
 use super::gather::{Encores, Wish, gather};
-use super::plan::Plan;
+use super::hurdle::{hurdle, jumpers};
+use super::keyframe::keyframes;
 use super::library::Library;
 use super::mend::{dissolve, mend};
 use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
+use super::plan::Plan;
 use super::rehearsal::Rehearsal;
 use super::seed::seed_person;
 use super::tracks::{Tracks, Window};
@@ -27,6 +30,14 @@ use super::{Scene, paper};
 use crate::patch::PatchSet;
 use crate::{Error, Result};
 
+/// Rounds of tries for everybody in a placed patch to find their ways.
+const KEYFRAME_TRIES: usize = 25;
+/// States expanded for each of the ways.
+const KEYFRAME_EXPANSIONS: usize = 600;
+/// One in so many people jumps over something, where there is something low.
+const HURDLERS: usize = 6;
+/// Failed tries in a row after which nobody more jumps.
+const HURDLE_PATIENCE: usize = 200;
 /// Failed gatherings in a row after which people come alone.
 const GATHER_PATIENCE: usize = 80;
 /// States expanded to lead people to and from where they meet.
@@ -77,6 +88,7 @@ pub fn tile(
     options: &Options,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Outcome> {
+    let set = &*admitted(scene, set, options.method)?;
     check_set(set)?;
     let domain = Domain::new(scene)?;
     match options.method {
@@ -158,22 +170,23 @@ fn engine(
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Outcome {
     let clock = Clock::new(options.time_secs, progress);
-    let library = Library::new(set, scene.limits);
+    let library = Library::new(set, scene.limits).preferring(&scene.preference).placing(&scene.placed);
     let crew = Crew::new(Tracks::new(&library, domain), scene.region.area(), options.seed);
     let taste = Taste { calm: calm(scene), expansions: 60 };
     let mut engine = Engine { scene, crew, taste, clock };
+    let placed = engine.keyframes();
+    engine.hurdle();
     engine.gather();
-    engine.tell("gather");
     engine.enrich(FIRST_PATIENCE);
-    engine.tell("enrich");
     engine.seed();
-    engine.tell("seed");
     engine.enrich(ENRICH_PATIENCE);
-    engine.tell("enrich");
     let Rehearsal { played, faults, .. } = engine.finish();
-    engine.tell("finish");
-    let Engine { crew, clock, .. } = engine;
-    let status = status(crew.tracks.chains(), scene, faults.len());
+    let Engine { mut crew, clock, .. } = engine;
+    crew.tracks.occupancy.close();
+    let status = match placed {
+        true => status(crew.tracks.chains(), scene, faults.len()),
+        false => Status::Imperfect("no ways were found to and from the placed patches".into()),
+    };
     let crowd = bake(crew.tracks.chains(), scene, options.seed, played);
     Outcome { crowd, status, danglings: 0, interpenetrations: faults.len(), solve_secs: clock.secs() }
 }
@@ -206,8 +219,6 @@ struct Engine<'a> {
 }
 
 impl Engine<'_> {
-    fn tell(&self, what: &str) { if std::env::var("V").is_ok() { let t = &self.crew.tracks; eprintln!("{:.2} {what}: {} people, {:.3} of {:.3}", self.clock.secs(), t.tracks.len(), t.company() as f32, self.company_wish()); } }
-
     fn goes_on(&mut self, phase: Phase) -> bool {
         let tracks = &self.crew.tracks;
         self.clock.goes_on(|| state(tracks, phase))
@@ -221,6 +232,33 @@ impl Engine<'_> {
 
     fn people_left(&self) -> usize {
         self.scene.characters.saturating_sub(self.crew.tracks.tracks.len())
+    }
+
+    /// Puts in what the scene has placed; false if not everybody found ways to and from it.
+    fn keyframes(&mut self) -> bool {
+        let placed = &self.scene.placed;
+        let taste = Taste { expansions: KEYFRAME_EXPANSIONS, ..self.taste };
+        placed.is_empty()
+            || (0..KEYFRAME_TRIES).any(|_| {
+                self.goes_on(Phase::Seed) && self.crew.work_one(|draft, rng| keyframes(draft, placed, taste, rng))
+            })
+    }
+
+    /// Adds people who jump over what is low enough, if there is such.
+    fn hurdle(&mut self) {
+        let jumpers = jumpers(self.crew.tracks.library);
+        let low = self.scene.obstacles.iter().any(|o| o.height.is_some());
+        let most = self.crew.tracks.tracks.len() + self.people_left().div_ceil(HURDLERS);
+        let mut failures = 0;
+        while low && !jumpers.is_empty() && failures < HURDLE_PATIENCE && self.goes_on(Phase::Seed) {
+            let count = self.crew.batch.min(most.saturating_sub(self.crew.tracks.tracks.len()));
+            if count == 0 {
+                return;
+            }
+            let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
+            let made = self.crew.work(count, |_, draft, rng| hurdle(draft, &jumpers, taste, rng), |_, _| true);
+            failures = if made.contains(&true) { 0 } else { failures + count };
+        }
     }
 
     /// Adds people who meet until there is as much company as wished for.
@@ -302,7 +340,6 @@ impl Engine<'_> {
     /// Mends, and where that cost more patches of several people than it may, puts new ones in and mends again.
     fn finish(&mut self) -> Rehearsal {
         let mut rehearsal = Rehearsal::new(&self.crew.tracks);
-        self.tell(&format!("rehearsed {}", rehearsal.faults.len()));
         self.mend(&mut rehearsal);
         for _ in 0..REFILLS {
             let share = self.crew.tracks.multi_person_share();
@@ -335,7 +372,6 @@ impl Engine<'_> {
             };
             self.crew.work(faults.len(), propose, |_, _| true);
             rehearsal.repeat(&self.crew.tracks);
-            self.tell(&format!("mended to {}", rehearsal.faults.len()));
         }
     }
 }

@@ -14,6 +14,7 @@ use super::draft::Draft;
 use super::library::Role;
 use super::occupancy::PieceId;
 use super::piece::{Company, Piece};
+use super::prefer::Stay;
 use super::tracks::{TrackId, Tracks, Window};
 use crate::geom::Ground;
 use crate::motion::FPS;
@@ -69,6 +70,9 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
     let horizon = tracks.domain.horizon;
     let (at, tick, joint) = meeting_point(tracks, lead_track, lead, ticks, rng);
     if !fits_hands(tracks, lead_track, lead.entry_group, tick) {
+        return None;
+    }
+    if !library.preference.is_wanted(kind, Stay::new(at, tick), rng) {
         return None;
     }
     let world_from_patch = at.then(lead.entry.inverse());

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::bake::Chains;
 use super::boxes::in_the_way;
 use super::domain::{Domain, Spot};
-use super::figure::{Figure, REACH, TOLERANCE, pairs_at};
+use super::figure::{Figure, Places, REACH, TOLERANCE};
 use super::library::Library;
 use super::piece::Piece;
 use super::tracks::TrackId;
@@ -35,9 +35,10 @@ pub(super) struct Fault {
 /// neighbours), in parallel.
 pub(super) fn faults(chains: Chains, played: &Performance, is_new: &[bool]) -> Vec<Fault> {
     let at_tick = |tick| {
-        let mut pairs = in_the_way(chains, played, tick);
+        let places = Places::at(tick, played.bodies.iter());
+        let mut pairs = in_the_way(chains, played, &places, tick);
         pairs.retain(|&(a, b)| is_new[a] || is_new[b]);
-        pairs.extend(touching(chains, &played.bodies, is_new, tick));
+        pairs.extend(touching(chains, &played.bodies, &places, is_new, tick));
         pairs
     };
     let per_tick: Vec<Vec<(TrackId, TrackId)>> = (0..chains.domain.horizon).into_par_iter().map(at_tick).collect();
@@ -78,17 +79,17 @@ fn is_in_wall(body: &Body, domain: &Domain, frame: usize) -> bool {
 /// True if from the frame before a joint turns or the hips move `rush` times faster than in the captures.
 pub(super) fn is_rushed(body: &Body, library: &Library, frame: usize, rush: f32) -> bool {
     let Some(last) = frame.checked_sub(1) else { return false };
-    let longest_step = rush * library.fastest_step + library.limits.stretch;
+    let longest_step = rush * library.fastest_hips + library.limits.stretch;
     let (before, now) = (body.pose(last), body.pose(frame));
     body.root[frame].distance(body.root[last]) > longest_step
         || (0..JOINT_COUNT).any(|j| turn_between(before[j], now[j]) > rush * library.fastest[j])
 }
 
 /// Who is in whom at a tick, somebody new in each pair.
-fn touching(chains: Chains, bodies: &[Body], is_new: &[bool], tick: i32) -> Vec<(TrackId, TrackId)> {
+fn touching(chains: Chains, bodies: &[Body], places: &Places, is_new: &[bool], tick: i32) -> Vec<(TrackId, TrackId)> {
     let mut pairs = Vec::new();
     let figure = |t: TrackId| Figure::of(&bodies[t], canonical(), tick);
-    pairs_at(tick, bodies.iter(), is_new, figure, |(a, first), (b, second)| {
+    places.pairs(is_new, figure, |(a, first), (b, second)| {
         let depth = first.depth_into(second);
         if depth > TOLERANCE && depth > TOLERANCE + captured_depth(chains, (a, b), tick) {
             pairs.push((a.min(b), a.max(b)));

@@ -15,6 +15,7 @@ use super::draft::Draft;
 use super::library::Library;
 use super::occupancy::PieceId;
 use super::piece::{Company, Rigid};
+use super::prefer::Stay;
 use crate::geom::Ground;
 
 /// Places tried for a first patch.
@@ -29,8 +30,6 @@ const SAMPLES: usize = 16;
 const ENOUGH: usize = 3;
 /// A way that this many closings lead along is easy.
 const EASY: usize = 2;
-/// Searches for somebody's way to the end of time.
-const TRIES: usize = 3;
 /// Room that the ends of a patch must have to walls, metres.
 const WALL_ROOM: f32 = 0.4;
 /// Ticks of the first patch that are seen at least.
@@ -96,10 +95,13 @@ fn player(encore: Encore, k: usize, people: usize) -> usize {
 
 /// One role of a placed patch.
 #[derive(Clone, Copy)]
-struct Part {
-    role: u32,
-    entry: Port,
-    exit: Port,
+pub(super) struct Part {
+    /// The role.
+    pub role: u32,
+    /// Where it begins.
+    pub entry: Port,
+    /// Where it ends.
+    pub exit: Port,
 }
 
 /// An encore as it lies if who plays its first role goes there by the closing as it is.
@@ -112,7 +114,8 @@ fn step(library: &Library, ends: &[Port], encore: Encore) -> Vec<Part> {
     parts(library, encore.kind, world_from_patch, tick - lead.begin)
 }
 
-fn parts(library: &Library, kind: u32, world_from_patch: Ground, clock: i32) -> Vec<Part> {
+/// The roles of a kind placed somewhere.
+pub(super) fn parts(library: &Library, kind: u32, world_from_patch: Ground, clock: i32) -> Vec<Part> {
     let part = |role| {
         let (entry, exit) = library.ports(role, world_from_patch, clock);
         Part { role, entry, exit }
@@ -132,12 +135,22 @@ pub(super) struct Wish {
 }
 
 /// Somebody's life so far. Those who are together come in the order of the roles that they played last.
-struct Life {
-    pieces: Vec<PieceId>,
+pub(super) struct Life {
+    /// The patches, in order.
+    pub pieces: Vec<PieceId>,
     begin: Port,
-    end: Port,
+    /// Where it ends so far.
+    pub end: Port,
     /// The first and the last patch of several people.
-    company: Company,
+    pub company: Company,
+}
+
+impl Life {
+    /// One patch.
+    pub fn of(part: &Part, id: PieceId, instance: u32) -> Self {
+        let company = Company { from: instance, to: instance };
+        Self { pieces: vec![id], begin: part.entry, end: part.exit, company }
+    }
 }
 
 /// Adds people who meet as wished, each present over the whole time.
@@ -153,9 +166,7 @@ pub(super) fn gather(
     let mut together = time_together(&first, horizon);
     let ids = draft.add_patch(first.iter().map(|p| (p.role, p.entry)))?;
     let here = draft.piece(ids[0]).instance;
-    let company = Company { from: here, to: here };
-    let life = |(p, id): (&Part, PieceId)| Life { pieces: vec![id], begin: p.entry, end: p.exit, company };
-    let mut lives: Vec<Life> = first.iter().zip(ids).map(life).collect();
+    let mut lives: Vec<Life> = first.iter().zip(ids).map(|(part, id)| Life::of(part, id, here)).collect();
     let mut kind = wish.kind;
     while together < wish.together && lives.iter().all(|l| l.end.tick < horizon - SEEN) {
         let Some((next, parts)) = go_on(draft, &mut lives, &encores.0[kind as usize], taste, rng) else { break };
@@ -184,12 +195,17 @@ fn time_together(parts: &[Part], horizon: i32) -> i32 {
 /// The first patch at some place and time that leaves room for what is to follow, if it is free there.
 fn place(draft: &Draft, wish: Wish, rng: &mut ChaCha8Rng) -> Option<Vec<Part>> {
     let (library, domain) = (draft.base.library, draft.base.domain);
-    let position = Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
+    let position =
+        Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
     let world_from_patch = Ground::new(position, rng.random_range(-PI..PI));
     let longest = library.roles_of(wish.kind).map(|r| library.roles[r as usize].ticks).max()?;
     let earliest = SEEN - longest;
     let latest = (domain.horizon - SEEN - wish.together).max(earliest + 1);
-    let parts = parts(library, wish.kind, world_from_patch, rng.random_range(earliest..latest));
+    let clock = rng.random_range(earliest..latest);
+    if !library.preference.is_wanted(wish.kind, Stay::new(world_from_patch, clock.max(0)), rng) {
+        return None;
+    }
+    let parts = parts(library, wish.kind, world_from_patch, clock);
     is_free(draft, &parts).then_some(parts)
 }
 
@@ -264,22 +280,34 @@ fn join(
 }
 
 /// Leads somebody from the beginning of time to their first patch.
-fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     if life.begin.tick > 0 {
         let company = Company { to: life.company.from, ..Company::NONE };
-        let way = (0..TRIES).find_map(|_| draft.search(life.begin, Goal::Since(0), company, taste, rng))?;
+        let way = lead(draft, life.begin, Goal::Since(0), company, taste, rng)?;
         life.pieces.splice(..0, way);
     }
     Some(())
 }
 
 /// Leads somebody from their last patch to the end of time.
-fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+pub(super) fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let horizon = draft.base.domain.horizon;
     if life.end.tick < horizon {
         let company = Company { from: life.company.to, ..Company::NONE };
-        let way = (0..TRIES).find_map(|_| draft.search(life.end, Goal::Until(horizon), company, taste, rng))?;
-        life.pieces.extend(way);
+        life.pieces.extend(lead(draft, life.end, Goal::Until(horizon), company, taste, rng)?);
     }
     Some(())
+}
+
+/// A way that keeps clear of those who are met, or at least of everybody else.
+fn lead(
+    draft: &mut Draft,
+    from: Port,
+    goal: Goal,
+    company: Company,
+    taste: Taste,
+    rng: &mut ChaCha8Rng,
+) -> Option<Vec<PieceId>> {
+    let tries = [Company::NONE, Company::NONE, company, company];
+    tries.into_iter().find_map(|company| draft.search(from, goal, company, taste, rng))
 }

@@ -7,6 +7,8 @@ use super::audition::plays_cleanly;
 use super::bridge::Port;
 use super::footprint::{Footprint, Lifts, footprints, lying, reach};
 use super::piece::Piece;
+use super::prefer::{Preference, Ready};
+use super::scene::Placed;
 use crate::deform::{Limits, Strand};
 use crate::geom::{Ground, Turn, Upright};
 use crate::motion::{JOINT_COUNT, Motion, MotionPath};
@@ -18,6 +20,8 @@ const MARGIN: f32 = 0.02;
 const RUSH: f32 = 1.1;
 /// Deformed, hips may go and turn this much faster; blending at stitches takes up the rest of what is let pass.
 const HURRY: f32 = 1.05;
+/// Who is so high above the ground with all of the body jumps, metres.
+const LEAP: f32 = 0.1;
 /// Longest strand of two single-person kinds that closes a gap, in frames.
 const MAX_STRAND_FRAMES: usize = 110;
 /// How far the end of a strand of one role and of two can be moved, metres.
@@ -58,6 +62,8 @@ pub(super) struct Role {
     pub reach: Vec<f32>,
     /// The box that lies there before the role takes it up, and the one after the role put it down.
     pub rests: [Option<Rest>; 2],
+    /// The frame at which it is highest above the ground, if it jumps.
+    pub leap: Option<usize>,
 }
 
 /// A box that lies on its place.
@@ -150,10 +156,14 @@ pub(super) struct Library<'a> {
     pub fastest: [f32; JOINT_COUNT],
     /// Longest way of the hips over the ground in the captures, metres per frame.
     pub fastest_step: f32,
+    /// Longest way of the hips through the air in the captures, metres per frame.
+    pub fastest_hips: f32,
     /// Largest reach of any footprint.
     pub max_reach: f32,
     /// By pose group, whether people have a box in their hands.
     pub laden: Vec<bool>,
+    /// Which patches are wanted where, which way, when.
+    pub preference: Ready,
 }
 
 impl<'a> Library<'a> {
@@ -177,7 +187,7 @@ impl<'a> Library<'a> {
             forward[role.entry_group as usize].push(step(role.exit, role.exit_group));
             backward[role.exit_group as usize].push(step(role.exit.inverse(), role.entry_group));
         }
-        let closings = closings(&roles, groups, |r| is_single(r) && !r.leaves_box());
+        let closings = closings(&roles, groups, |r| is_single(r) && !r.leaves_box() && r.leap.is_none());
         Self {
             set,
             limits,
@@ -189,11 +199,30 @@ impl<'a> Library<'a> {
             backward,
             closings,
             fastest,
+            fastest_hips: set
+                .kinds
+                .iter()
+                .flat_map(|k| &k.fragments)
+                .map(|f| fastest_hips(&f.motion))
+                .fold(0.0, f32::max),
             fastest_step: roles.iter().map(|r| longest_step(&r.path)).fold(0.0, f32::max),
             max_reach: roles.iter().flat_map(Role::reaches).fold(0.0, f32::max),
             laden: set.laden_groups(),
+            preference: Ready::default(),
             roles,
         }
+    }
+
+    /// The same with wishes.
+    pub fn preferring(self, preference: &Preference) -> Self {
+        Self { preference: Ready::new(preference, self.set), ..self }
+    }
+
+    /// The same, where some kinds are used only where they are placed.
+    pub fn placing(mut self, placed: &[Placed]) -> Self {
+        let set = self.set;
+        self.multi.retain(|&k| placed.iter().all(|p| p.kind != set.kinds[k as usize].name));
+        self
     }
 
     /// True if a role laid along `path` over `ticks` makes the hips go or turn faster than anywhere in the captures.
@@ -270,11 +299,19 @@ fn prepare(set: &PatchSet, kind: u32, role: u32, limits: &Limits, fastest: &[f32
         begin: fragment.begin as i32,
         hips_turns: hips_turns(&fragment.motion),
         reach: footprints.iter().map(reach).collect(),
+        leap: leap(&lifts),
         rests: rests(&set.kinds[kind as usize], role),
         footprints,
         lifts,
         path,
     }
+}
+
+/// The frame at which somebody who jumps is highest.
+fn leap(lifts: &[Lifts]) -> Option<usize> {
+    let lowest = |l: &Lifts| l.iter().copied().fold(f32::INFINITY, f32::min);
+    let highest = (0..lifts.len()).max_by(|&i, &j| lowest(&lifts[i]).total_cmp(&lowest(&lifts[j])))?;
+    (lowest(&lifts[highest]) > LEAP).then_some(highest)
 }
 
 /// The boxes that a role is the first to take up (or sits on) and the last to put down.
@@ -309,6 +346,11 @@ fn askew(path: &MotionPath) -> f32 {
 
 fn longest_step(path: &MotionPath) -> f32 {
     path.points.windows(2).map(|w| w[0].distance(w[1])).fold(0.0, f32::max)
+}
+
+fn fastest_hips(motion: &Motion) -> f32 {
+    let hips = |f: usize| motion.path.points[f].extend(motion.heights[f]);
+    (1..motion.len()).map(|f| hips(f).distance(hips(f - 1))).fold(0.0, f32::max)
 }
 
 fn hips_turns(motion: &Motion) -> Vec<f32> {

@@ -10,6 +10,7 @@ use super::bake::uses;
 use super::bridge::Taste;
 use super::draft::Draft;
 use super::faults::{Fault, first_unclean};
+use super::piece::Company;
 use super::rehearsal::segments;
 use super::tracks::{TrackId, Tracks, Window};
 use crate::refine::refine;
@@ -38,7 +39,12 @@ pub(super) fn dissolve(draft: &mut Draft, fault: Fault, taste: Taste, rng: &mut 
     (0..TRIES).find_map(|attempt| {
         let track = if rng.random_range(0..2) == 0 { fault.a } else { fault.b };
         let at = near(tracks, track, fault.tick, DISSOLVE_REACH, |people| people > 1)?;
-        let instance = tracks.piece(tracks.tracks[track][at]).instance;
+        let piece = tracks.piece(tracks.tracks[track][at]);
+        // What a scene has placed stays.
+        if !tracks.library.multi.contains(&tracks.library.roles[piece.role as usize].kind) {
+            return None;
+        }
+        let instance = piece.instance;
         let window = |track| tracks.index_in(track, instance).map(|from| Window { track, from, to: from + 1 });
         let windows = (0..tracks.tracks.len()).filter_map(window).collect();
         rebridge(draft, windows, 0..=attempt, taste, rng)
@@ -73,7 +79,12 @@ fn rebridge(
         *window = draft.base.widen(*window, WINDOW * rng.random_range(wider.clone()));
         draft.hide(*window);
     }
-    windows.iter().try_for_each(|&w| draft.bridge_window(w, taste, rng))?;
+    // What lets people part from an embrace may be what is wrong here.
+    let apart = rng.random_range(0..2) == 0;
+    windows.iter().try_for_each(|&w| match apart {
+        true => draft.bridge_window_from(w, Company::NONE, taste, rng),
+        false => draft.bridge_window(w, taste, rng),
+    })?;
     windows.iter().all(|&w| is_clean(draft, w)).then_some(())
 }
 

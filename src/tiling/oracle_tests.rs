@@ -116,7 +116,8 @@ impl Case<'_> {
         let view = View::new(self.library, self.domain, &self.occupancy);
         let taste = Taste { calm: 1.0, expansions: 20_000 };
         let mut tries = 0;
-        let found = std::iter::repeat_with(|| Bridge::default().search(view, self.from, goal, Company::NONE, taste, rng));
+        let found =
+            std::iter::repeat_with(|| Bridge::default().search(view, self.from, goal, Company::NONE, taste, rng));
         let found = found.take(CHANCES).inspect(|_| tries += 1).find_map(|chain| chain);
         (found, tries)
     }

@@ -27,8 +27,8 @@ use super::domain::Domain;
 use super::engine::{Clock, wishes};
 use super::faults::faults;
 use super::library::Library;
-use super::rehearsal::perform;
 use super::outcome::{Options, Outcome, Phase, Progress, Status};
+use super::rehearsal::perform;
 use crate::patch::PatchSet;
 use crate::refine::Performance;
 
@@ -47,9 +47,9 @@ pub(super) fn tile(
 ) -> Outcome {
     let mut clock = Clock::new(options.time_secs, progress);
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
-    let library = Library::new(set, scene.limits);
+    let library = Library::new(set, scene.limits).preferring(&scene.preference);
     let mut tiling = Patchwork::new(&library, domain);
-    let preference = prefer::by_size(&library);
+    let preference = prefer::preference(&library);
 
     anneal::anneal(&mut tiling, scene.characters, &preference, &mut clock, &mut rng);
     let mut search = search::Search::new(preference);

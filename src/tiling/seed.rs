@@ -9,6 +9,7 @@ use super::domain::Spot;
 use super::draft::Draft;
 use super::library::{Library, Move};
 use super::piece::{Company, Piece};
+use super::prefer::Stay;
 use crate::geom::Ground;
 
 /// Places tried for one person.
@@ -32,7 +33,9 @@ fn first_piece(draft: &Draft, laden: bool, rng: &mut ChaCha8Rng) -> Option<Piece
     let place = Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
     let heading = rng.random_range(-std::f32::consts::PI..std::f32::consts::PI);
     let lead = rng.random_range(0..library.roles[role as usize].ticks);
-    if !domain.holds(Spot::ground(0), place, 0.35) {
+    let stay = Stay::new(Ground::new(place, heading), 0);
+    let wanted = library.preference.is_wanted(library.roles[role as usize].kind, stay, rng);
+    if !wanted || !domain.holds(Spot::ground(0), place, 0.35) {
         return None;
     }
     // The place is where the person is at tick 0, somewhere inside the first patch.

@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 from enum import StrEnum
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated
 
 import typer
 
-from crowdquilt import check, export, report
+from crowdquilt import check, export, patch, report, samples
 from crowdquilt._core import Crowd, CrowdquiltError, Outcome, PatchSet, Scene
 from crowdquilt.cli.app import CHECK_FAILED, NOT_PERFECT, app, console, example
 from crowdquilt.cli.progress import solve
@@ -39,13 +40,16 @@ def tell(outcome: Outcome) -> None:
 
 @app.command(epilog=example("tile samples.patches --scene plaza.toml -o plaza.crowd --seed 7"))
 def tile(
-    patches: Annotated[Path, typer.Argument(help="Patch set (.patches).")],
+    patches: Annotated[
+        Path, typer.Argument(help="Patch set (.patches), or `samples`: cut from the generated captures.")
+    ],
     out: Annotated[Path, typer.Option("--out", "-o", help="Crowd to write (.crowd).")],
     scene: Annotated[Path | None, typer.Option(help="Scene (.toml); the demo's 12 x 12 m if not given.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Same seed, same crowd.")] = 1,
     method: Annotated[Method, typer.Option(help="Our engine, or Algorithms 1 and 2 of the paper.")] = Method.engine,
     time: Annotated[float, typer.Option(help="Longest search, in seconds.")] = 60.0,
     characters: Annotated[int | None, typer.Option(help="How many people, instead of the scene's.")] = None,
+    density: Annotated[float | None, typer.Option(help="How many per square metre, instead of the scene's.")] = None,
     interaction: Annotated[
         float | None, typer.Option(help="Share of their time together, 0 to 1, instead of the scene's.")
     ] = None,
@@ -60,8 +64,9 @@ def tile(
     """
     if not time > 0:
         raise typer.BadParameter(f"expected more than 0 seconds, found {time}", param_hint="--time")
-    kinds = PatchSet.load(patches)
-    where = (Scene.load(scene) if scene else Scene.demo()).replace(characters=characters, interaction=interaction)
+    kinds = load_set(patches)
+    where = Scene.load(scene) if scene else Scene.demo()
+    where = where.replace(characters=characters, density=density, interaction=interaction)
     try:
         outcome = solve(where, kinds, seed=seed, method=method, time=time, threads=threads)
     except CrowdquiltError as error:
@@ -76,6 +81,15 @@ def tile(
     console.print(f"{out}: written")
     if outcome.status == "imperfect" or not len(outcome.crowd):
         raise typer.Exit(NOT_PERFECT)
+
+
+def load_set(patches: Path) -> PatchSet:
+    """A patch set from its file; `samples` is the one cut from the generated captures."""
+    if str(patches) != "samples" or patches.exists():
+        return PatchSet.load(patches)
+    with TemporaryDirectory() as folder:
+        samples.write(folder, seed=1)
+        return patch.cut(folder)
 
 
 def name_files(message: str, scene: Path | None, patches: Path) -> str:

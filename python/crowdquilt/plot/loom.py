@@ -177,15 +177,17 @@ def threads(painter: Painter, crowd: Crowd, who: Lives, colours: list[style.Colo
 
 
 def obstacles(painter: Painter, crowd: Crowd, rise: float) -> None:
-    """Obstacles stand for the whole time."""
-    top = rise * crowd.seconds
+    """Obstacles over the whole time: what moves leans in the direction of its way."""
+    layers = 20
     for obstacle in crowd.obstacles:
-        for a, b in zip(obstacle, np.roll(obstacle, -1, axis=0), strict=True):
-            for low in np.linspace(0, top, 20, endpoint=False):
-                high = low + top / 20
-                quad = np.array([[a[0], low, a[1]], [b[0], low, b[1]], [b[0], high, b[1]], [a[0], high, a[1]]])
+        outlines = [obstacle.at(crowd.seconds * k / layers) for k in range(layers + 1)]
+        for k, (lower, upper) in enumerate(pairwise(outlines)):
+            low, high = (rise * crowd.seconds * j / layers for j in (k, k + 1))
+            edges = zip(lower, np.roll(lower, -1, axis=0), np.roll(upper, -1, axis=0), upper, strict=True)
+            for a, b, c, d in edges:
+                quad = np.array([[a[0], low, a[1]], [b[0], low, b[1]], [c[0], high, c[1]], [d[0], high, d[1]]])
                 painter.face(quad, (0.74, 0.72, 0.67, 0.22))
-        floor = np.insert(obstacle, 1, 0.0, axis=1)
+        floor = np.insert(outlines[0], 1, 0.0, axis=1)
         painter.face(floor, (0.74, 0.72, 0.67, 0.9))
 
 

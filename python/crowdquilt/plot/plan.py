@@ -13,7 +13,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from crowdquilt._core import Crowd
+from crowdquilt._core import Crowd, Obstacle
 from crowdquilt.plot import style
 from crowdquilt.plot.lives import Lives, busiest, lives, together
 
@@ -38,7 +38,7 @@ def plan(crowd: Crowd, path: str | Path | None = None, time: float | None = None
     margin = 0.002 * max(width, depth)  # half the wall's line
     axes.set(xlim=(low[0] - margin, high[0] + margin), ylim=(high[1] + margin, low[1] - margin), aspect="equal")
     axes.axis("off")
-    ground(axes, crowd)
+    ground(axes, crowd, secs)
     kind_colours, palette = style.colours(crowd)
     hulls(axes, crowd, who, secs, kind_colours)
     now = person_colours(crowd, who, secs, kind_colours)
@@ -51,7 +51,7 @@ def plan(crowd: Crowd, path: str | Path | None = None, time: float | None = None
     return sheet
 
 
-def ground(axes: Axes, crowd: Crowd) -> None:
+def ground(axes: Axes, crowd: Crowd, secs: float) -> None:
     """Floor, metre grid, walls and obstacles."""
     region = Polygon(crowd.region, closed=True, facecolor=style.FLOOR, edgecolor="none", zorder=0)
     axes.add_patch(region)
@@ -63,10 +63,27 @@ def ground(axes: Axes, crowd: Crowd) -> None:
     grid.set_clip_path(region)
     axes.add_patch(Polygon(crowd.region, closed=True, fill=False, edgecolor=style.INK, linewidth=2.2, zorder=9))
     for obstacle in crowd.obstacles:
-        solid = Polygon(obstacle, closed=True, facecolor="#d7d3c8", edgecolor=style.INK, linewidth=1.4, zorder=2)
-        hatch = Polygon(obstacle, closed=True, fill=False, edgecolor="#b3aea0", linewidth=0, hatch="////", zorder=2.1)
+        outline, low_one = obstacle.at(secs), obstacle.height is not None
+        floor = "#ece8dd" if low_one else "#d7d3c8"
+        solid = Polygon(outline, closed=True, facecolor=floor, edgecolor=style.INK, linewidth=1.4, zorder=2)
+        hatch = Polygon(
+            outline, closed=True, fill=False, edgecolor="#b3aea0", linewidth=0, hatch=".." if low_one else "////",
+            zorder=2.1,
+        )  # fmt: skip
         axes.add_patch(solid)
         axes.add_patch(hatch)
+        if obstacle.moves:
+            course(axes, obstacle, secs)
+
+
+def course(axes: Axes, obstacle: Obstacle, secs: float) -> None:
+    """Where a moving obstacle comes from, and where it is in a second."""
+    middles = np.array([obstacle.at(s).mean(axis=0) for s in np.linspace(max(secs - TRAIL_SECS, 0.0), secs, 20)])
+    axes.plot(*middles.T, color=style.INK, linewidth=1.0, linestyle=(0, (2, 2)), zorder=2.2)
+    ahead = obstacle.at(secs + 1.0).mean(axis=0)
+    if np.hypot(*(ahead - middles[-1])) > 0.1:
+        arrow = {"arrowstyle": "-|>", "color": style.INK, "linewidth": 1.2}
+        axes.annotate("", ahead, middles[-1], arrowprops=arrow, zorder=2.3)
 
 
 def hulls(axes: Axes, crowd: Crowd, who: Lives, secs: float, kind_colours: list[style.Colour]) -> None:

@@ -3,10 +3,12 @@
 mod actions;
 mod carry;
 mod greet;
+mod jump;
 mod lift;
 mod meet;
 mod place;
 mod push;
+mod rows;
 mod sit;
 mod talk;
 mod trio;
@@ -21,6 +23,7 @@ pub(super) fn scenes() -> Vec<Scene> {
         walks::scenes(),
         place::scenes(),
         actions::scenes(),
+        jump::scenes(),
         carry::scenes(),
         lift::scenes(),
         sit::scenes(),
@@ -28,6 +31,7 @@ pub(super) fn scenes() -> Vec<Scene> {
         push::scenes(),
         talk::scenes(),
         trio::scenes(),
+        rows::scenes(),
     ];
     all.into_iter().flatten().collect()
 }

@@ -3,6 +3,7 @@
 mod annotation;
 mod bodies;
 mod contacts;
+mod jumps;
 
 use std::sync::LazyLock;
 

@@ -78,12 +78,15 @@ fn energy_change(tiling: &Patchwork, proposal: &Proposal) -> f32 {
 /// A kind drawn by preference, anywhere in the region and at any time at which it is seen.
 fn random_placement(tiling: &Patchwork, preference: &Preference, rng: &mut ChaCha8Rng) -> Placement {
     let (domain, library) = (tiling.domain, tiling.library);
-    let kind = preference.draw(rng);
-    let roles = library.roles_of(kind).map(|r| &library.roles[r as usize]);
-    let last = roles.map(|r| r.begin + r.ticks).max().expect("a kind has people");
-    let place = Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
-    let heading = rng.random_range(-std::f32::consts::PI..std::f32::consts::PI);
-    Placement { kind, world_from_patch: Ground::new(place, heading), clock: rng.random_range(1 - last..domain.horizon) }
+    preference.draw(rng, |kind, rng| {
+        let roles = library.roles_of(kind).map(|r| &library.roles[r as usize]);
+        let last = roles.map(|r| r.begin + r.ticks).max().expect("a kind has people");
+        let (x, z) = (domain.min.x..domain.max.x, domain.min.y..domain.max.y);
+        let place = Vec2::new(rng.random_range(x), rng.random_range(z));
+        let heading = rng.random_range(-std::f32::consts::PI..std::f32::consts::PI);
+        let clock = rng.random_range(1 - last..domain.horizon);
+        Placement { kind, world_from_patch: Ground::new(place, heading), clock }
+    })
 }
 
 #[cfg(test)]

@@ -21,15 +21,15 @@ const I_MAX: usize = 12;
 type Place = (u32, i32, i32, i32, i32);
 
 /// The search with its history of removed patches.
-pub(super) struct Search {
-    preference: Preference,
+pub(super) struct Search<'a> {
+    preference: Preference<'a>,
     removed: HashSet<Place>,
     proposal: Proposal,
 }
 
-impl Search {
+impl<'a> Search<'a> {
     /// Nothing removed yet.
-    pub fn new(preference: Preference) -> Self {
+    pub fn new(preference: Preference<'a>) -> Self {
         Self { preference, removed: HashSet::new(), proposal: Proposal::default() }
     }
 
@@ -92,7 +92,7 @@ impl Search {
             let change = self.proposal.change().1;
             if change <= 0 && self.proposal.stitches.iter().any(|s| s.old == d) {
                 // 5
-                found.push((change, self.preference.rank(role.kind, rng), placement));
+                found.push((change, self.preference.rank(&placement, rng), placement));
             }
         }
         found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));

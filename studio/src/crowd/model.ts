@@ -63,6 +63,22 @@ export interface Prop {
   holds: { character: number; begin: number; end: number }[];
 }
 
+export interface Waypoint {
+  secs: number;
+  position: Vec2;
+  /** Radians about +y. */
+  heading: number;
+}
+
+export interface Obstacle {
+  /** On the ground of the scene, or about its way-points if there are some. */
+  points: Vec2[];
+  /** Metres; null is over all heads. */
+  height: number | null;
+  /** In order of time; empty if it stands. */
+  path: Waypoint[];
+}
+
 export interface Crowd {
   fps: number;
   /** As text: 64 bits do not fit a number. */
@@ -71,7 +87,7 @@ export interface Crowd {
   /** At least one. */
   builds: Build[];
   region: Vec2[];
-  obstacles: Vec2[][];
+  obstacles: Obstacle[];
   lastFrame: number;
   kinds: Kind[];
   /** Kind of every instance. */

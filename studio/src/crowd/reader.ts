@@ -2,10 +2,11 @@
 
 import { Container, count, FileProblem, finite, list, object, text, whole } from "./container";
 import type { Build, Character, Crowd, Flesh, Fragment, Joint, Kind, Prop, Vec2, Vec3 } from "./model";
+import { obstacle } from "./obstacle";
 
 export const MAGIC = "CQCROWD";
-/** Files of version 1 have no boxes. */
-export const VERSIONS = [1, 2];
+/** Files of version 1 have no boxes, of version 2 only obstacles that are walls. */
+export const VERSIONS = [1, 2, 3];
 
 /** The crowd in `buffer`. Throws a FileProblem that names the place. */
 export function readCrowd(buffer: ArrayBuffer): Crowd {
@@ -23,7 +24,9 @@ export function readCrowd(buffer: ArrayBuffer): Crowd {
     joints,
     builds: builds(header.builds, joints),
     region: polygon(domain.region, "header.domain.region"),
-    obstacles: list(domain.obstacles, "header.domain.obstacles").map((o, i) => polygon(o, `obstacle ${i}`)),
+    obstacles: list(domain.obstacles, "header.domain.obstacles").map((o, i) => {
+      return obstacle(o, polygon(o, `obstacle ${i}`), `obstacle ${i}`);
+    }),
     lastFrame: count(domain.last_frame, "header.domain.last_frame"),
     kinds: list(object(header.set, "header.set").kinds, "header.set.kinds").map(kind),
     instances: list(header.instances, "header.instances").map((v, i) => {

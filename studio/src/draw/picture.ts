@@ -133,6 +133,7 @@ export class Picture {
     const time = store.get("time");
     const inLoom = store.get("view") === "loom";
     stage.renderer.info.reset();
+    stage.update(time);
     people.uniforms.colorMode.value = COLOR_MODES.indexOf(store.get("color"));
     people.uniforms.chosen.value = store.get("person") ?? -1;
     people.body.visible = people.spots.visible = store.get("bodies");

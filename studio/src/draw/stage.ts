@@ -4,19 +4,16 @@ import {
   BufferGeometry,
   Color,
   DirectionalLight,
-  ExtrudeGeometry,
   Float32BufferAttribute,
   Group,
   HemisphereLight,
   LinearToneMapping,
   Mesh,
-  MeshStandardMaterial,
   PCFShadowMap,
   PlaneGeometry,
   Scene,
   ShaderMaterial,
   ShadowMaterial,
-  Shape,
   Vector2,
   Vector3,
   WebGLRenderer,
@@ -24,10 +21,9 @@ import {
 import { bounds } from "../crowd/hull";
 import type { Crowd, Vec2 } from "../crowd/model";
 import { discard } from "./discard";
+import { Obstacles } from "./obstacles";
 import { LIGHT, type Theme } from "./palette";
 import { band } from "./strips";
-
-const OBSTACLE_HEIGHT = 1.1;
 
 export class Stage {
   readonly renderer: WebGLRenderer;
@@ -39,6 +35,7 @@ export class Stage {
   radius = 10;
   private readonly hemisphere: HemisphereLight;
   private readonly ground = new Group();
+  private obstacles: Obstacles | null = null;
 
   constructor(
     canvas: HTMLCanvasElement,
@@ -68,7 +65,13 @@ export class Stage {
     this.radius = Math.hypot(high[0] - low[0], high[1] - low[1]) / 2;
     for (const old of [...this.ground.children]) discard(old);
     this.ground.add(this.plane(crowd.region), this.shadows(), this.border(crowd.region));
-    for (const obstacle of crowd.obstacles) this.ground.add(this.obstacle(obstacle));
+    this.obstacles = new Obstacles(crowd, this.theme.obstacle);
+    this.ground.add(this.obstacles.group);
+  }
+
+  /** Brings obstacles that move to `secs`. */
+  update(secs: number): void {
+    this.obstacles?.update(secs);
   }
 
   /** Puts the shadows' box around `focus`: sharp where one looks, whatever the size of the crowd. */
@@ -135,24 +138,6 @@ export class Stage {
     });
     const mesh = new Mesh(geometry, material);
     mesh.renderOrder = 1;
-    return mesh;
-  }
-
-  private obstacle(corners: readonly Vec2[]): Mesh {
-    // A shape lies in x, y and grows along z: turned so that its y becomes the ground's -z, hence the sign.
-    const shape = new Shape(corners.map(([x, z]) => new Vector2(x, -z)));
-    const bevel = 0.025;
-    const geometry = new ExtrudeGeometry(shape, {
-      depth: OBSTACLE_HEIGHT - bevel,
-      bevelEnabled: true,
-      bevelSize: bevel,
-      bevelOffset: -bevel,
-      bevelThickness: bevel,
-      bevelSegments: 3,
-    });
-    geometry.rotateX(-Math.PI / 2);
-    const mesh = new Mesh(geometry, new MeshStandardMaterial({ color: this.theme.obstacle, roughness: 0.9 }));
-    mesh.castShadow = mesh.receiveShadow = true;
     return mesh;
   }
 }

@@ -1,0 +1,135 @@
+//! What a scene demands of a patch set and of a method, before anything is tiled.
+
+use std::borrow::Cow;
+
+use super::{Method, Scene};
+use crate::patch::{PatchKind, PatchSet};
+use crate::{Error, Result};
+
+/// Label of kinds that are for jumping over something.
+const JUMP: &str = "jump";
+
+/// Label of kinds that are only used where a scene has placed them.
+const STAGED: &str = "staged";
+
+/// The kinds of `set` that the scene uses.
+///
+/// # Errors
+/// The scene speaks of labels or kinds that the set does not have, leaves no kind over, or asks for what the method
+/// cannot do.
+pub(super) fn admitted<'a>(scene: &Scene, set: &'a PatchSet, method: Method) -> Result<Cow<'a, PatchSet>> {
+    possible(scene, method)?;
+    known(scene, set)?;
+    let used = |kind: &PatchKind| {
+        let placed = scene.placed.iter().any(|p| p.kind == kind.name);
+        let wanted = scene.kinds.lets_pass(&kind.labels) && (!has(kind, JUMP) || may_jump(scene)) && !has(kind, STAGED);
+        placed || wanted
+    };
+    if set.kinds.iter().all(used) {
+        return Ok(Cow::Borrowed(set));
+    }
+    let kinds: Vec<_> = set.kinds.iter().filter(|k| used(k)).cloned().collect();
+    if kinds.is_empty() {
+        let problem = format!("expected to leave some of {} kinds over, found none left", set.kinds.len());
+        return Err(Error::invalid("scene", "kinds", problem));
+    }
+    Ok(Cow::Owned(PatchSet { groups: set.groups.clone(), kinds }))
+}
+
+fn has(kind: &PatchKind, label: &str) -> bool {
+    kind.labels.iter().any(|l| l == label)
+}
+
+/// People jump where there is something to jump over, or where they are told to.
+fn may_jump(scene: &Scene) -> bool {
+    let over = scene.obstacles.iter().any(|o| o.height.is_some());
+    over || scene.kinds.only.iter().map(String::as_str).chain(scene.preference.labels()).any(|l| l == JUMP)
+}
+
+/// Refuses what the method cannot do.
+fn possible(scene: &Scene, method: Method) -> Result<()> {
+    let asked = [
+        ("source", !scene.sources.is_empty()),
+        ("sink", !scene.sinks.is_empty()),
+        ("place", method == Method::Paper && !scene.placed.is_empty()),
+        ("team", !scene.teams.is_empty()),
+        ("rivals", !scene.rivals.is_empty()),
+        ("periodic", scene.periodic.any()),
+    ];
+    let name = match method {
+        Method::Engine => "the engine",
+        Method::Paper => "the method \"paper\"",
+    };
+    match asked.iter().find(|a| a.1) {
+        Some((key, _)) => Err(Error::invalid("scene", *key, format!("{name} cannot do this yet; leave it out"))),
+        None => Ok(()),
+    }
+}
+
+/// Every label and kind that the scene names must be there: a misspelt one would do nothing, silently.
+fn known(scene: &Scene, set: &PatchSet) -> Result<()> {
+    let mut labels: Vec<&str> = set.kinds.iter().flat_map(|k| &k.labels).map(String::as_str).collect();
+    labels.sort_unstable();
+    labels.dedup();
+    let of_kinds = scene.kinds.only.iter().chain(&scene.kinds.without).map(|l| ("kinds", l.as_str()));
+    let of_wishes = scene.preference.labels().map(|l| ("prefer", l));
+    let of_rivals = scene.rivals.iter().map(|l| ("rivals", l.as_str()));
+    if let Some((place, label)) = of_kinds.chain(of_wishes).chain(of_rivals).find(|(_, l)| !labels.contains(l)) {
+        let problem = format!("expected a label of the patch set ({}), found {label:?}", labels.join(", "));
+        return Err(Error::invalid("scene", place, problem));
+    }
+    let people = |name: &str| set.kinds.iter().find(|k| k.name == name).map(PatchKind::people);
+    if let Some(alone) = scene.placed.iter().find(|p| people(&p.kind) == Some(1)) {
+        let problem = format!("expected a kind of two people or more, found {:?} of one", alone.kind);
+        return Err(Error::invalid("scene", "place", problem));
+    }
+    match scene.placed.iter().find(|p| people(&p.kind).is_none()) {
+        Some(placed) => {
+            let problem = format!("expected the name of a kind of the patch set, found {:?}", placed.kind);
+            Err(Error::invalid("scene", "place", problem))
+        }
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tiling::{Form, Periodic, Preference, Term};
+
+    fn set() -> PatchSet {
+        let kind = |name: &str, label: &str| PatchKind {
+            name: name.into(),
+            labels: vec![label.into(), "any".into()],
+            ..PatchKind::default()
+        };
+        PatchSet { kinds: vec![kind("a", "walk"), kind("b", "greet")], ..PatchSet::default() }
+    }
+
+    fn problem(scene: &Scene) -> String {
+        admitted(scene, &set(), Method::Engine).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn kinds_are_filtered_by_label() {
+        let mut scene = Scene::demo();
+        assert!(matches!(admitted(&scene, &set(), Method::Paper), Ok(Cow::Borrowed(_))));
+        scene.kinds.without = vec!["greet".into()];
+        let left = admitted(&scene, &set(), Method::Engine).unwrap().into_owned();
+        assert_eq!(left.kinds.iter().map(|k| k.name.as_str()).collect::<Vec<_>>(), ["a"]);
+        scene.kinds.without = vec!["any".into()];
+        assert!(problem(&scene).contains("none left"));
+    }
+
+    #[test]
+    fn what_is_not_there_or_cannot_be_done_is_named() {
+        let mut scene = Scene::demo();
+        scene.kinds.only = vec!["wallk".into()];
+        assert!(problem(&scene).contains("any, greet, walk") && problem(&scene).contains("wallk"));
+        let form = Form::Ratios(vec![("hug".into(), 2.0)]);
+        let preference = Preference { terms: vec![Term { form, strength: 1.0, labels: vec![], during: None }] };
+        assert!(problem(&Scene { preference, ..Scene::demo() }).contains("\"hug\""));
+        let periodic = Periodic { x: true, ..Periodic::default() };
+        assert!(problem(&Scene { periodic, ..Scene::demo() }).contains("periodic"));
+    }
+}

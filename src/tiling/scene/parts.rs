@@ -1,0 +1,97 @@
+//! What a scene may hold besides walls and wishes.
+
+use glam::Vec2;
+
+use crate::geom::{Ground, Polygon};
+
+/// Which kinds of a patch set are used, by their labels.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KindFilter {
+    /// Only kinds with one of these labels; all if there are none.
+    pub only: Vec<String>,
+    /// No kinds with one of these.
+    pub without: Vec<String>,
+}
+
+impl KindFilter {
+    /// True if a kind of some labels passes.
+    pub fn lets_pass(&self, labels: &[String]) -> bool {
+        let has = |wanted: &[String]| wanted.iter().any(|l| labels.contains(l));
+        (self.only.is_empty() || has(&self.only)) && !has(&self.without)
+    }
+}
+
+/// A place where people come in or go out: a stretch of ground, mostly of the border.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gate {
+    /// One end of the stretch, metres.
+    pub from: Vec2,
+    /// The other; the same for a point.
+    pub to: Vec2,
+    /// Which way people look, radians; any if none.
+    pub heading: Option<f32>,
+    /// How far from it they may look, radians.
+    pub spread: f32,
+    /// Pose group they are in, by name; any if none.
+    pub group: Option<String>,
+}
+
+/// Where people come in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Source {
+    /// Where.
+    pub gate: Gate,
+    /// When one comes, seconds, in order.
+    pub times: Vec<f32>,
+    /// Whose they are.
+    pub team: Option<String>,
+}
+
+/// Where people go out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sink {
+    /// Where.
+    pub gate: Gate,
+}
+
+/// A patch that the user put where it is: the rest is tiled around it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placed {
+    /// Name of the kind.
+    pub kind: String,
+    /// `world_from_patch`.
+    pub at: Ground,
+    /// When the patch begins, seconds.
+    pub secs: f32,
+}
+
+/// People who belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Team {
+    /// Its name.
+    pub name: String,
+    /// How many.
+    pub characters: usize,
+    /// Where they are at the first moment.
+    pub start: Polygon,
+    /// Which way they look then, radians; any if none.
+    pub heading: Option<f32>,
+}
+
+/// Directions in which the domain repeats: what leaves on one side comes in on the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Periodic {
+    /// Along x.
+    pub x: bool,
+    /// Along z.
+    pub z: bool,
+    /// In time.
+    pub t: bool,
+}
+
+impl Periodic {
+    /// True if it repeats in any.
+    pub fn any(self) -> bool {
+        self.x || self.z || self.t
+    }
+}
