@@ -11,6 +11,8 @@ pub const UNITS_PER_METRE: f64 = 1024.0;
 
 /// Nobody looks further, metres: a world that repeats has no end.
 const FARTHEST: f64 = 20_000.0;
+/// Nor over more copies of a world than this, in either direction.
+const MOST_COPIES: f64 = 100.0;
 
 /// A patch at its place, or at one of its repetitions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,7 +59,8 @@ impl Nearby {
     /// All patches that reach into the disc of `radius` metres about `centre`, with their repetitions; a few beyond may be among
     /// them. The work is in proportion to the area asked for.
     pub fn within(&self, centre: DVec2, radius: f64) -> impl Iterator<Item = Spot> {
-        let far = radius.clamp(0.0, FARTHEST) + self.reach;
+        let most = self.repeat.map_or(FARTHEST, |size| FARTHEST.min(MOST_COPIES * size.min_element()));
+        let far = radius.clamp(0.0, most) + self.reach;
         self.shifts(centre, far).flat_map(move |shift| {
             let low = self.square(centre - shift - far);
             let high = self.square(centre - shift + far);

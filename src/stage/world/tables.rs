@@ -127,6 +127,9 @@ pub struct Tables {
     pub gait: Option<Gait>,
 }
 
+/// Corners are no further from the middle of their patch, metres.
+const LARGEST: f32 = 200.0;
+
 /// Words per kind in [`Tables::kinds`].
 pub(super) const KIND: usize = 5;
 
@@ -248,6 +251,9 @@ impl Tables {
         let names = self.info.names.len();
         let odd = self.object_names.iter().chain(&self.stayer_names).find(|&&n| n as usize >= names);
         expect(odd.is_none(), "names", || format!("a name below {names} is expected, {odd:?}"))?;
+        // Where a world repeats, who looks around looks as far as the largest patch reaches.
+        let odd = self.corners.iter().find(|c| !(c.abs() <= LARGEST));
+        expect(odd.is_none(), "corners", || format!("{odd:?} m from the middle of a patch"))?;
         let floats = [&self.corners, &self.object_points, &self.object_radii, &self.stayers];
         let finite = floats.iter().all(|list| list.iter().all(|v| v.is_finite() && v.abs() < 1e6));
         expect(finite, "kinds", || "a number that is no place".into())
