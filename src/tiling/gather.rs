@@ -237,7 +237,8 @@ fn go_on(
         let encore = encores[rng.random_range(0..encores.len())];
         let parts = step(library, &ends, encore);
         let from = |k: usize| ends[player(encore, k, ends.len())];
-        if !is_free(draft, &parts) {
+        let stay = Stay::new(parts[0].entry.at, parts[0].entry.tick);
+        if !library.preference.is_wanted(encore.kind, stay, rng) || !is_free(draft, &parts) {
             continue;
         }
         let mark = draft.mark();

@@ -96,11 +96,11 @@ pub enum Field {
 const LARGEST: f32 = 50.0;
 
 /// How much -ln F adds to the cost of a step, and the most of it that is charged.
-const PRICE: f32 = 0.5;
+const PRICE: f32 = 1.0;
 const DEAREST: f32 = 10.0;
 
 /// Least probability with which something is tried.
-const LEAST: f32 = 1e-3;
+const LEAST: f32 = 1e-5;
 
 /// Where, which way and when a patch is.
 #[derive(Clone, Copy, Debug)]
