@@ -87,11 +87,11 @@ impl Actor {
 
     /// Arms go back, swing up with the jump and come down with it; times from the cursor on.
     fn swing_arms(&mut self, off: f32, landing: f32) {
-        let back = [0.05, off - 0.30, off - 0.26, off - 0.03];
-        let up = [off - 0.26, off + 0.06, off + 0.14, landing + 0.16];
+        let back = [0.0, off - 0.34, off - 0.32, off + 0.10];
+        let up = [off - 0.32, off + 0.14, off + 0.16, landing + 0.24];
         for (flex, elbow) in [(FlexLeft, ElbowLeft), (FlexRight, ElbowRight)] {
-            self.pose(back, &[(flex, -0.75)]);
-            self.pose(up, &[(flex, 1.25), (elbow, 0.5)]);
+            self.pose(back, &[(flex, -0.6)]);
+            self.pose(up, &[(flex, 0.95), (elbow, 0.4)]);
         }
         self.pose([off - 0.1, off + 0.1, landing, landing + 0.3], &[(AbductLeft, 0.18), (AbductRight, 0.18)]);
     }
