@@ -3,7 +3,7 @@
 //! Squares of 8 m, period 10 s, n people in and n out, up to four objects and three standing people.
 
 use crowdquilt::check::world::{PatchReport, check_patch};
-use crowdquilt::world::{Creation, Limits, Method, measure_creation, measure_walk, scenes};
+use crowdquilt::world::{Creation, Limits, Method, measure_creation, measure_replay, measure_walk, scenes};
 
 fn main() -> crowdquilt::Result<()> {
     let argument = |n: usize| std::env::args().nth(n).and_then(|n| n.parse::<usize>().ok());
@@ -33,6 +33,12 @@ fn main() -> crowdquilt::Result<()> {
     let at = |share: f64| walk.frames[((walk.frames.len() - 1) as f64 * share) as usize];
     println!("\n10 km of street, one patch a frame: {} patches made, {} kept", walk.made, walk.resident);
     println!("a frame: median {:.2} ms, p99 {:.2} ms, most {:.2} ms", at(0.5), at(0.99), at(1.0));
+    println!("\n  kinds    people   MB   M/s at 1 s   M/s at 1 h   a patch, us");
+    for (kinds, unique) in [(64, false), (1_000, false), (1_000, true)] {
+        let r = measure_replay(1_000_000, kinds, unique)?;
+        let (megabytes, early, late) = (r.bytes as f64 / 1e6, r.early / 1e6, r.late / 1e6);
+        println!("{:7} {:9} {megabytes:4.0} {early:12.0} {late:12.0} {:13.3}", r.kinds, r.people, r.single_micros);
+    }
     Ok(())
 }
 

@@ -15,6 +15,7 @@ use std::path::Path;
 use crowdquilt::export::clip_glb;
 use crowdquilt::motion::{Clip, bvh, canonical};
 use crowdquilt::samples;
+use crowdquilt::world::scenes;
 use glam::{Quat, Vec3};
 
 /// Two joints, and two people of them who move.
@@ -51,6 +52,9 @@ fn main() -> std::io::Result<()> {
     write("compose", "carry.toml", include_bytes!("../examples/compose/carry-and-pass.compose.toml"))?;
     write("compose", "rest.toml", include_bytes!("../examples/compose/put-and-take.compose.toml"))?;
     write("compose", "sit.toml", include_bytes!("../examples/compose/sit-on-box.compose.toml"))?;
+    let street = scenes::city(2, true, 1).and_then(|plan| plan.bake("small", &plan.build()?));
+    write("world", "small.world", &street.map_err(std::io::Error::other)?.to_bytes())?;
+    write("geojson", "square.geojson", include_bytes!("../examples/worlds/square.geojson"))?;
     write("rig", "small.toml", b"hips = \"Root_M\"\nleft_up_leg = \"Hip_L\"\n")?;
     write("avatar", "small.glb", &avatar::character(&glb))?;
     for take in samples::generate(1).iter().take(3) {

@@ -3,11 +3,12 @@
 The modules are the stages of the pipeline, named like those of the Rust core::
 
     samples -> motion -> patch -> tiling (refine) -> stage -> check, export
+                                  world           -> stage -> check
 
 Metres, seconds, radians; right-handed, y up, the ground is the xz plane. Motion runs at 30 frames per second.
 """
 
-from crowdquilt import check, export, motion, patch, refine, samples, stage, tiling
+from crowdquilt import check, export, motion, patch, refine, samples, stage, tiling, world
 from crowdquilt._core import (
     Clip,
     Crowd,
@@ -22,6 +23,8 @@ from crowdquilt._core import (
     Role,
     Row,
     Scene,
+    World,
+    WorldScene,
     __version__,
 )
 
@@ -39,6 +42,8 @@ __all__ = [
     "Role",
     "Row",
     "Scene",
+    "World",
+    "WorldScene",
     "__version__",
     "check",
     "export",
@@ -48,4 +53,5 @@ __all__ = [
     "samples",
     "stage",
     "tiling",
+    "world",
 ]

@@ -14,10 +14,10 @@ from statistics import median
 
 from rich.table import Table
 
-from crowdquilt import check, motion, patch, refine, samples
-from crowdquilt._core import PatchSet, Scene, tile
+from crowdquilt import motion, patch, refine, samples
+from crowdquilt._core import PatchSet, Scene, measure_patches, measure_poses, measure_replay, measure_street, tile
+from crowdquilt.bench_tiling import PAPER, STATIC, growth, static
 
-PAPER = "Hyun et al. 2013, figure 7: Static, 907 patches, 2.93 GHz Core i7"
 Say = Callable[[str], None]
 
 
@@ -41,41 +41,20 @@ def row(area: str, name: str, ours: float, unit: str = "", reference: float | No
 
 
 def tiling(seeds: int, say: Say) -> list[Row]:
-    """The demo's scene (12 x 12 m, 20 s) beside the densest static scene of the paper; medians over the seeds."""
+    """The paper's static scenes, denser ones and larger ones."""
     with tempfile.TemporaryDirectory() as folder:
         samples.write(Path(folder), 1)
         patches = patch.cut(Path(folder))
+    figures = [figure for scene in STATIC for figure in static(scene, patches, seeds, say)]
+    figures += growth(patches, say)
     kinds = row("tiling", "kinds to choose from", len(patches), "", 43, PAPER)
+    source = {True: PAPER, False: ""}
     return [
         kinds,
-        *tiling_rows(patches, "engine", "", seeds, say),
-        *tiling_rows(patches, "paper", "Algorithms 1 and 2 here: ", seeds, say),
-    ]
-
-
-def tiling_rows(patches: PatchSet, method: str, prefix: str, seeds: int, say: Say) -> list[Row]:
-    """The rows of one method; its crowds are checked like any other."""
-    runs = []
-    for seed in range(1, seeds + 1):
-        outcome = tile(Scene.demo(), patches, seed=seed, method=method)
-        perfect = outcome.status == "perfect" and check.check(outcome.crowd).ok
-        runs.append((outcome, check.summary(outcome.crowd), perfect))
-        say(f"tiling: {method}, seed {seed} of {seeds}: {outcome.status} in {outcome.solve_secs:.2f} s")
-
-    def add(name: str, ours: float, unit: str = "", reference: float | None = None) -> Row:
-        return row("tiling", prefix + name, float(ours), unit, reference, PAPER if reference is not None else "")
-
-    def typical(name: str) -> float:
-        return float(median(getattr(summary, name) for _, summary, _ in runs))
-
-    return [
-        add("solve time", median(run.solve_secs for run, _, _ in runs), "s", 103 * 60),
-        add("slowest solve", max(run.solve_secs for run, _, _ in runs), "s", 103 * 60),
-        add("characters", typical("characters"), "", 70),
-        add("patches placed", typical("instances"), "", 907),
-        add("share of time in patches of two or more", typical("multi_person_share")),
-        add("danglings, all runs", sum(summary.danglings for _, summary, _ in runs), "", 0),
-        add(f"perfect and checked, of {seeds}", sum(ok for _, _, ok in runs)),
+        *(
+            row("tiling", f"{f.row}: {f.name}", float(f.value), f.unit, f.reference, source[f.reference is not None])
+            for f in figures
+        ),
     ]
 
 
@@ -175,7 +154,63 @@ def public_readers() -> dict[str, Callable[[Path], int]]:
     return readers
 
 
-AREAS: dict[str, Callable[[int, Say], list[Row]]] = {"motion": captures, "tiling": tiling}
+CROWD_PATCHES = "Yersin et al. 2009, section 6"
+TARGET = "what we set out to reach"
+
+
+def worlds(seeds: int, say: Say) -> list[Row]:
+    """How long crowd patches take, and a walk through 10 km of endless street; the paper: 60 ms for a patch."""
+    rows = []
+    for name, walkers, reference in (("patch-create", 16, 60.0), ("patch-create-dense", 30, None)):
+        typical, most_of_all, most, free = measure_patches(walkers, 60 * seeds, False)
+        say(f"world: {name}: {typical:.2f} ms, {free:.1%} free of faults")
+        title = f"{name}: {walkers} in and out, median"
+        rows.append(row("world", title, typical, "ms", reference, CROWD_PATCHES if reference else ""))
+        rows.append(row("world", f"{name}: 95 %", most_of_all, "ms", 3.0 if walkers == 16 else None, TARGET))
+        rows.append(row("world", f"{name}: slowest", most, "ms"))
+        rows.append(row("world", f"{name}: share without any fault", free))
+    typical, _, _, free = measure_patches(16, 20 * seeds, True)
+    rows.append(row("world", "the paper's particles here: median", typical, "ms"))
+    rows.append(row("world", "the paper's particles here: share without any fault", free))
+    made, resident, typical, _, most = measure_street(10_000)
+    say(f"world: endless-street: {made} patches, {most:.2f} ms at most")
+    rows.append(row("world", "endless-street: 10 km, patches made", made))
+    rows.append(row("world", "endless-street: patches kept at most", resident))
+    rows.append(row("world", "endless-street: frame with a new patch, median", typical, "ms"))
+    rows.append(row("world", "endless-street: frame with a new patch, slowest", most, "ms", 16.0, TARGET))
+    return rows
+
+
+def stage(seeds: int, say: Say) -> list[Row]:
+    """A million people played on one core; the paper: 3,700 people at 30 to 35 frames per second, drawn."""
+    rows = []
+    steering = "steering, best of those measured: 1.5 M agent-steps/s"
+    with tempfile.TemporaryDirectory() as folder:
+        samples.write(Path(folder), 1)
+        people, nanos = measure_poses(patch.cut(Path(folder)))
+    say(f"stage: replay-poses: {nanos:.0f} ns a body")
+    rows.append(
+        row("stage", "replay-poses: a full body (22 joints)", nanos / 1e3, "us", 1.06, "ozz-animation, 31 joints")
+    )
+    for name, kinds, unique in (("1,000 shared kinds", 1000, False), ("unique patches", 1000, True)):
+        runs = [measure_replay(1_000_000, kinds, unique) for _ in range(max(1, seeds // 2))]
+        people, _, memory = runs[0][:3]
+        early, late, single = (median(run[i] for run in runs) for i in (3, 4, 5))
+        say(f"stage: {name}: {early / 1e6:.0f} M root samples/s")
+        rows.append(row("stage", f"replay-roots, {name}: at 1 s", early / 1e6, "M/s", 1.5, steering))
+        rows.append(row("stage", f"replay-roots, {name}: at 1 h", late / 1e6, "M/s", 1.5, steering))
+        rows.append(row("stage", f"{name}: people", people))
+        rows.append(row("stage", f"{name}: in memory", memory / 1e6, "MB", 600.0 if unique else 64.0, TARGET))
+        rows.append(row("stage", f"random-access, {name}: a patch at any time", single, "us"))
+    return rows
+
+
+AREAS: dict[str, Callable[[int, Say], list[Row]]] = {
+    "motion": captures,
+    "tiling": tiling,
+    "world": worlds,
+    "stage": stage,
+}
 
 
 def table(rows: list[Row]) -> Table:

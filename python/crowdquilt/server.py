@@ -21,7 +21,8 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
 from crowdquilt import check, report
-from crowdquilt._core import Crowd, CrowdquiltError, PatchSet
+from crowdquilt._core import Crowd, CrowdquiltError, PatchSet, World
+from crowdquilt.world import holds_world
 
 STUDIO = Path(__file__).parent / "studio_dist"
 HOST = "127.0.0.1"
@@ -30,8 +31,9 @@ FRESH = {"Cache-Control": "no-store"}
 
 def app(crowd: Path, opened: Callable[[], None] | None = None) -> Starlette:
     """The server's routes; `opened` is called once it listens."""
-    is_set = holds_set(crowd)
-    (PatchSet if is_set else Crowd).load(crowd)  # a bad file is told here, not in the browser
+    is_set, is_world = holds_set(crowd), holds_world(crowd)
+    # A bad file is told here, not in the browser.
+    (PatchSet if is_set else World if is_world else Crowd).load(crowd)
     if not (STUDIO / "index.html").is_file():
         raise CrowdquiltError(f"{STUDIO}: the built studio is not there; `make studio` builds it")
 
@@ -40,8 +42,8 @@ def app(crowd: Path, opened: Callable[[], None] | None = None) -> Starlette:
         return Response(data, media_type="application/octet-stream", headers=FRESH)
 
     async def report_file(_request: Request) -> Response:
-        if is_set:
-            return Response("a patch set has no report", status_code=404)
+        if is_set or is_world:
+            return Response("only crowds have reports", status_code=404)
         data = await run_in_threadpool(report_of, crowd)
         return Response(data, media_type="application/json", headers=FRESH)
 

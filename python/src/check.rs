@@ -29,7 +29,7 @@ impl Row {
 
 /// The contract of a finished crowd, row by row; `str(report)` is a table.
 #[pyclass(frozen, module = "crowdquilt")]
-pub struct Report(core::Report);
+pub struct Report(pub core::Report);
 
 #[pymethods]
 impl Report {

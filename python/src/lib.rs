@@ -20,6 +20,7 @@ mod signals;
 mod stage;
 mod tiling;
 mod wishes;
+mod world;
 
 #[pymodule]
 mod _core {
@@ -49,6 +50,11 @@ mod _core {
     use super::stage::{Crowd, Fragment, Obstacle, Prop};
     #[pymodule_export]
     use super::tiling::{Outcome, Progress, Scene, tile};
+    #[pymodule_export]
+    use super::world::{
+        Pattern, World, WorldScene, build_world, check_world, measure_patches, measure_poses, measure_replay,
+        measure_street,
+    };
 
     #[pymodule_export]
     #[allow(non_upper_case_globals)]

@@ -7,27 +7,35 @@ from dataclasses import fields
 import pytest
 
 import crowdquilt as cq
-from crowdquilt import bench
+from crowdquilt import bench, bench_tiling
 
 
 def test_rows_are_measured_on_the_scene(monkeypatch: pytest.MonkeyPatch) -> None:
     class Small:
+        from_toml = staticmethod(cq.Scene.from_toml)
+
         @staticmethod
         def demo() -> cq.Scene:
             return cq.Scene.from_toml(
                 "region = [[0, 0], [7, 0], [7, 7], [0, 7]]\nduration_secs = 3.0\ncharacters = 5\ninteraction = 0.0\n"
             )
 
-    monkeypatch.setattr(bench, "Scene", Small)
+    monkeypatch.setattr(bench_tiling, "Scene", Small)
+    monkeypatch.setattr(bench, "STATIC", [bench_tiling.Static("static-173", 5, 0.0, 173, 16, 18.0)])
+    monkeypatch.setattr(bench_tiling, "SIDES", (5,))
     lines: list[str] = []
     rows = {row.row: row for row in bench.AREAS["tiling"](2, lines.append)}
-    assert len(lines) == 4
-    assert rows["characters"].ours == 5 and rows["characters"].ratio == pytest.approx(5 / 70)
-    solve = rows["solve time"]
-    assert 0 < solve.ours <= rows["slowest solve"].ours and solve.reference == 6180 and solve.unit == "s"
-    assert solve.ratio == pytest.approx(solve.ours / 6180)
-    assert rows["danglings, all runs"].reference == 0 and rows["danglings, all runs"].ratio is None
-    assert rows["Algorithms 1 and 2 here: solve time"].ours > 0
+    assert len(lines) == 2
+    people = rows["static-173: characters, fewest"]
+    assert people.ours == 5 and people.ratio == pytest.approx(5 / 16)
+    solve = rows["static-173: solve time, median"]
+    assert 0 < solve.ours <= rows["static-173: solve time, slowest"].ours
+    assert solve.reference == 18 and solve.unit == "s"
+    assert solve.ratio == pytest.approx(solve.ours / 18)
+    danglings = rows["static-173: danglings, all runs"]
+    assert danglings.reference == 0 and danglings.ratio is None
+    assert rows["static-173: Algorithms 1 and 2 here: solve time, median"].ours > 0
+    assert rows["area-growth: 5 x 5 m, per character"].ours > 0
 
 
 def test_row_fields() -> None:

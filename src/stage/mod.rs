@@ -1,8 +1,10 @@
-//! The finished crowd: baked, immutable, playable at any time. Imports no solver.
+//! The finished crowd or world: baked, immutable, playable at any time. Imports no solver.
 
 mod crowd;
 mod file;
 mod prop;
+pub mod world;
 
 pub use crowd::{Character, Crowd, DomainInfo, FragmentUse, Instance};
 pub use prop::{Holding, Prop};
+pub use world::World;

@@ -3,6 +3,7 @@
 
 use glam::{Quat, Vec3};
 
+use super::figure::{Figure, TOLERANCE};
 use crate::geom::Capsule;
 use crate::motion::{Motion, body_capsules};
 use crate::patch::PatchKind;
@@ -19,6 +20,9 @@ pub(super) fn plays_cleanly(kind: &PatchKind) -> bool {
     if played.iter().any(|body| !body.strained.is_empty()) {
         return false;
     }
+    if !parts_cleanly(kind) {
+        return false;
+    }
     let (mut globals, mut now, mut then) = (Vec::new(), Vec::new(), Vec::new());
     let last = kind.fragments.iter().map(|f| f.begin as usize + f.motion.len()).max().unwrap_or(0);
     (0..last).all(|frame| {
@@ -32,6 +36,26 @@ pub(super) fn plays_cleanly(kind: &PatchKind) -> bool {
         }
         (0..now.len())
             .all(|i| (0..i).all(|j| depth(&now[i], &now[j]) <= depth(&then[i], &then[j]).max(0.0) + ALLOWANCE))
+    })
+}
+
+/// True if nobody enters or leaves while in somebody else: the frame before or after is of another patch, whose people
+/// may not be.
+fn parts_cleanly(kind: &PatchKind) -> bool {
+    let mut globals = Vec::new();
+    let mut figure = |role: usize, clock: usize| {
+        let fragment = &kind.fragments[role];
+        let frame = clock.checked_sub(fragment.begin as usize).filter(|&f| f < fragment.motion.len())?;
+        fragment.motion.globals(frame, &mut globals);
+        Some(Figure::new(&globals))
+    };
+    (0..kind.people()).all(|role| {
+        let begin = kind.fragments[role].begin as usize;
+        [begin, begin + kind.fragments[role].motion.len() - 1].into_iter().all(|clock| {
+            let own = figure(role, clock).expect("its first and its last frame");
+            let mut others = (0..kind.people()).filter(|&other| other != role);
+            others.all(|other| figure(other, clock).is_none_or(|theirs| own.depth_into(&theirs) <= TOLERANCE))
+        })
     })
 }
 

@@ -4,7 +4,7 @@ use glam::Vec2;
 
 use super::bake::Chains;
 use super::domain::{Domain, Spot};
-use super::figure::{Figure, REACH, TOLERANCE, frame_at};
+use super::figure::{Figure, Places, REACH, TOLERANCE, frame_at};
 use super::piece::Piece;
 use super::tracks::TrackId;
 use crate::geom::{Capsule, Cuboid};
@@ -18,15 +18,16 @@ const SAME: f32 = 0.02;
 const SPACING: f32 = 0.06;
 
 /// The people to blame for boxes that enter something at a tick: two different ones, or one alone.
-pub(super) fn in_the_way(chains: Chains, played: &Performance, tick: i32) -> Vec<(TrackId, TrackId)> {
-    let here: Vec<(&Prop, Cuboid)> =
+pub(super) fn in_the_way(chains: Chains, played: &Performance, places: &Places, tick: i32) -> Vec<(TrackId, TrackId)> {
+    let mut here: Vec<(&Prop, Cuboid)> =
         played.props.iter().filter_map(|p| Some((p, p.at_frame(u32::try_from(tick).ok()?)?))).collect();
+    here.sort_by(|(_, a), (_, b)| a.at.middle.x.total_cmp(&b.at.middle.x));
     let mut pairs = Vec::new();
     for (i, (prop, cuboid)) in here.iter().enumerate() {
         // Looked for only where something is wrong.
         let keeper = || keeper(prop, tick).or_else(|| sitter(chains, prop));
-        for (t, body) in played.bodies.iter().enumerate() {
-            if depth_in_body(cuboid, body, tick) > TOLERANCE && !is_partner(chains, prop, t, tick) {
+        for t in places.near(cuboid.at.ground().position, REACH + cuboid.radius()) {
+            if depth_in_body(cuboid, &played.bodies[t], tick) > TOLERANCE && !is_partner(chains, prop, t, tick) {
                 // Where it lies, who runs into it is to go another way.
                 let held = prop.holders(tick as u32).next().is_some();
                 let other = if held { keeper().unwrap_or(t) } else { t };
@@ -36,7 +37,8 @@ pub(super) fn in_the_way(chains: Chains, played: &Performance, tick: i32) -> Vec
         if is_in_wall(cuboid, chains.domain, tick) {
             pairs.extend(keeper().map(|k| (k, k)));
         }
-        for (other, theirs) in &here[..i] {
+        let beside = |theirs: &Cuboid| cuboid.at.middle.x - theirs.at.middle.x < 2.0 * REACH;
+        for (other, theirs) in here[..i].iter().rev().take_while(|(_, theirs)| beside(theirs)) {
             let near = cuboid.at.middle.distance(theirs.at.middle) < cuboid.radius() + theirs.radius();
             if near && cuboid.overlap(theirs) > TOLERANCE {
                 let Some(first) = keeper() else { continue };

@@ -225,7 +225,7 @@ impl Bridge {
             return true;
         }
         let piece = self.piece(view, node);
-        !(leaves_box && !view.is_free(&piece)) && !self.meets_own_way(view, parent, &piece)
+        (!leaves_box || view.is_free(&piece)) && !self.meets_own_way(view, parent, &piece)
     }
 
     /// True if a piece runs into a box on the way to a node, or its own box lies on that way.

@@ -16,7 +16,7 @@ use super::bake::{Chains, segments_of};
 use super::boxes::depth_in;
 use super::domain::Spot;
 use super::faults::is_rushed;
-use super::figure::{Figure, REACH, TOLERANCE, frame_at, pairs_at};
+use super::figure::{Figure, Places, REACH, TOLERANCE};
 use crate::geom::Cuboid;
 use crate::motion::{Build, canonical};
 use crate::refine::{Body, Hold, Segment, fit, holds};
@@ -130,10 +130,8 @@ impl<'a> Fitting<'a> {
     fn clashes(&self, changed: &[bool]) -> Vec<(usize, usize)> {
         let at_tick = |tick: i32| -> Vec<(usize, usize)> {
             let mut pairs = Vec::new();
-            let bodies = self.worn.iter().map(|w| &w.body);
-            pairs_at(
-                tick,
-                bodies,
+            let places = Places::at(tick, self.worn.iter().map(|w| &w.body));
+            places.pairs(
                 changed,
                 |p| self.figure(p, tick),
                 |(p, a), (q, b)| {
@@ -166,26 +164,38 @@ impl<'a> Fitting<'a> {
 
     /// The changed people whose fitted bodies are deeper in a box than the canonical ones; not those who hold it.
     fn bumps(&self, changed: &[bool]) -> Vec<usize> {
-        let bumps = |p: &usize| self.props.iter().any(|prop| self.bumps_into(*p, prop));
-        (0..self.worn.len()).into_par_iter().filter(|&p| changed[p]).filter(bumps).collect()
+        let at_tick = |tick: i32| -> Vec<usize> {
+            let here: Vec<(&Prop, Cuboid)> =
+                self.props.iter().filter_map(|prop| Some((prop, prop.at_frame(tick as u32)?))).collect();
+            if here.is_empty() {
+                return vec![];
+            }
+            let places = Places::at(tick, self.worn.iter().map(|w| &w.body));
+            let near = |(prop, cuboid): &(&Prop, Cuboid)| {
+                let near = places.near(cuboid.at.ground().position, REACH + cuboid.radius());
+                let strangers = near.filter(|&p| changed[p] && prop.holders(tick as u32).all(|h| h != p as u32));
+                strangers.filter(|&p| self.is_bump(p, cuboid, tick)).collect::<Vec<_>>()
+            };
+            here.iter().flat_map(near).collect()
+        };
+        let horizon = self.chains.domain.horizon;
+        let mut all: Vec<usize> = (0..horizon).into_par_iter().flat_map_iter(at_tick).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
     }
 
-    fn bumps_into(&self, person: usize, prop: &Prop) -> bool {
-        (prop.begin..=prop.end()).filter(|&frame| prop.holders(frame).all(|h| h != person as u32)).any(|frame| {
-            let (Some(cuboid), tick) = (prop.at_frame(frame), frame as i32) else { return false };
-            let Some(now) = self.figure_near(person, tick, &cuboid) else { return false };
-            let depth = depth_in(&cuboid, &now.capsules);
-            let canonical = |then: Figure| depth > depth_in(&cuboid, &then.capsules) + TOGETHER;
-            depth > TOLERANCE && self.canonical_figure(person, tick).is_none_or(canonical)
-        })
+    fn is_bump(&self, person: usize, cuboid: &Cuboid, tick: i32) -> bool {
+        let Some(now) = self.figure_near(person, tick, cuboid) else { return false };
+        let depth = depth_in(cuboid, &now.capsules);
+        let canonical = |then: Figure| depth > depth_in(cuboid, &then.capsules) + TOGETHER;
+        depth > TOLERANCE && self.canonical_figure(person, tick).is_none_or(canonical)
     }
 
     /// A person at a tick who may touch a box.
     fn figure_near(&self, person: usize, tick: i32, cuboid: &Cuboid) -> Option<Figure> {
-        let body = &self.worn[person].body;
-        let away = (body.root[frame_at(body, tick)?] - cuboid.at.middle).with_y(0.0).length();
-        let figure = (away <= REACH + cuboid.radius()).then(|| self.figure(person, tick)).flatten();
-        figure.filter(|f| cuboid.at.ground().position.distance(f.center) < cuboid.radius() + f.radius)
+        let away = |f: &Figure| cuboid.at.ground().position.distance(f.center);
+        self.figure(person, tick).filter(|f| away(f) < cuboid.radius() + f.radius)
     }
 }
 

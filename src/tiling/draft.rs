@@ -130,9 +130,21 @@ impl<'a> Draft<'a> {
     /// Fills a window whose pieces are out with another chain; `None` if none was found.
     pub fn bridge_window(&mut self, window: Window, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
         let Window { track, from, to } = window;
+        let company = Company { from: self.base.company_before(track, from), to: self.base.company_after(track, to) };
+        self.bridge_window_from(window, company, taste, rng)
+    }
+
+    /// The same, where somebody may be near the people of some patches for a moment only.
+    pub fn bridge_window_from(
+        &mut self,
+        window: Window,
+        company: Company,
+        taste: Taste,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<()> {
+        let Window { track, from, to } = window;
         let (begin, end) = (self.base.port(track, from), self.base.port(track, to));
         let open = to == self.base.tracks[track].len();
-        let company = Company { from: self.base.company_before(track, from), to: self.base.company_after(track, to) };
         let (begin, goal) = match (from == 0, open) {
             (_, true) => (begin, Goal::Until(self.base.domain.horizon)),
             (true, false) => (end, Goal::Since(0)),

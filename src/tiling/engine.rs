@@ -177,16 +177,12 @@ fn engine(
     let placed = engine.keyframes();
     engine.hurdle();
     engine.gather();
-    engine.tell("gather");
     engine.enrich(FIRST_PATIENCE);
-    engine.tell("enrich");
     engine.seed();
-    engine.tell("seed");
     engine.enrich(ENRICH_PATIENCE);
-    engine.tell("enrich");
     let Rehearsal { played, faults, .. } = engine.finish();
-    engine.tell("finish");
-    let Engine { crew, clock, .. } = engine;
+    let Engine { mut crew, clock, .. } = engine;
+    crew.tracks.occupancy.close();
     let status = match placed {
         true => status(crew.tracks.chains(), scene, faults.len()),
         false => Status::Imperfect("no ways were found to and from the placed patches".into()),
@@ -223,19 +219,6 @@ struct Engine<'a> {
 }
 
 impl Engine<'_> {
-    fn tell(&self, what: &str) {
-        if std::env::var("V").is_ok() {
-            let t = &self.crew.tracks;
-            eprintln!(
-                "{:.2} {what}: {} people, {:.3} of {:.3}",
-                self.clock.secs(),
-                t.tracks.len(),
-                t.company() as f32,
-                self.company_wish()
-            );
-        }
-    }
-
     fn goes_on(&mut self, phase: Phase) -> bool {
         let tracks = &self.crew.tracks;
         self.clock.goes_on(|| state(tracks, phase))
@@ -357,7 +340,6 @@ impl Engine<'_> {
     /// Mends, and where that cost more patches of several people than it may, puts new ones in and mends again.
     fn finish(&mut self) -> Rehearsal {
         let mut rehearsal = Rehearsal::new(&self.crew.tracks);
-        self.tell(&format!("rehearsed {}", rehearsal.faults.len()));
         self.mend(&mut rehearsal);
         for _ in 0..REFILLS {
             let share = self.crew.tracks.multi_person_share();
@@ -390,7 +372,6 @@ impl Engine<'_> {
             };
             self.crew.work(faults.len(), propose, |_, _| true);
             rehearsal.repeat(&self.crew.tracks);
-            self.tell(&format!("mended to {}", rehearsal.faults.len()));
         }
     }
 }

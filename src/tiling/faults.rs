@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::bake::Chains;
 use super::boxes::in_the_way;
 use super::domain::{Domain, Spot};
-use super::figure::{Figure, REACH, TOLERANCE, pairs_at};
+use super::figure::{Figure, Places, REACH, TOLERANCE};
 use super::library::Library;
 use super::piece::Piece;
 use super::tracks::TrackId;
@@ -35,9 +35,10 @@ pub(super) struct Fault {
 /// neighbours), in parallel.
 pub(super) fn faults(chains: Chains, played: &Performance, is_new: &[bool]) -> Vec<Fault> {
     let at_tick = |tick| {
-        let mut pairs = in_the_way(chains, played, tick);
+        let places = Places::at(tick, played.bodies.iter());
+        let mut pairs = in_the_way(chains, played, &places, tick);
         pairs.retain(|&(a, b)| is_new[a] || is_new[b]);
-        pairs.extend(touching(chains, &played.bodies, is_new, tick));
+        pairs.extend(touching(chains, &played.bodies, &places, is_new, tick));
         pairs
     };
     let per_tick: Vec<Vec<(TrackId, TrackId)>> = (0..chains.domain.horizon).into_par_iter().map(at_tick).collect();
@@ -85,10 +86,10 @@ pub(super) fn is_rushed(body: &Body, library: &Library, frame: usize, rush: f32)
 }
 
 /// Who is in whom at a tick, somebody new in each pair.
-fn touching(chains: Chains, bodies: &[Body], is_new: &[bool], tick: i32) -> Vec<(TrackId, TrackId)> {
+fn touching(chains: Chains, bodies: &[Body], places: &Places, is_new: &[bool], tick: i32) -> Vec<(TrackId, TrackId)> {
     let mut pairs = Vec::new();
     let figure = |t: TrackId| Figure::of(&bodies[t], canonical(), tick);
-    pairs_at(tick, bodies.iter(), is_new, figure, |(a, first), (b, second)| {
+    places.pairs(is_new, figure, |(a, first), (b, second)| {
         let depth = first.depth_into(second);
         if depth > TOLERANCE && depth > TOLERANCE + captured_depth(chains, (a, b), tick) {
             pairs.push((a.min(b), a.max(b)));

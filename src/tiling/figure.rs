@@ -76,32 +76,47 @@ impl Figure {
     }
 }
 
-/// Calls `meet` with the figures of all pairs of people at a tick whose hips are near enough for them to touch, somebody
-/// new in each pair. `figure` is asked only for those, once.
-pub(super) fn pairs_at<'b>(
-    tick: i32,
-    bodies: impl Iterator<Item = &'b Body>,
-    is_new: &[bool],
-    figure: impl Fn(usize) -> Option<Figure>,
-    mut meet: impl FnMut((usize, &Figure), (usize, &Figure)),
-) {
-    let place = |(person, body): (usize, &Body)| {
-        let root = body.root[frame_at(body, tick)?];
-        Some((Vec2::new(root.x, root.z), person))
-    };
-    // Sorted along x, so that near ones are neighbours.
-    let mut present: Vec<(Vec2, usize)> = bodies.enumerate().filter_map(place).collect();
-    present.sort_unstable_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.1.cmp(&b.1)));
-    let figures: Vec<OnceCell<Option<Figure>>> = present.iter().map(|_| OnceCell::new()).collect();
-    let figure = |i: usize| figures[i].get_or_init(|| figure(present[i].1)).as_ref();
-    for (i, &(here, a)) in present.iter().enumerate() {
-        let reached = present[i + 1..].iter().take_while(|(there, _)| there.x - here.x <= TOUCHING_HIPS);
-        for (k, &(there, b)) in reached.enumerate() {
-            if !(is_new[a] || is_new[b]) || here.distance_squared(there) > TOUCHING_HIPS * TOUCHING_HIPS {
-                continue;
-            }
-            if let (Some(first), Some(second)) = (figure(i), figure(i + 1 + k)) {
-                meet((a, first), (b, second));
+/// Where everybody's hips are at a tick, sorted along x, so that near ones are neighbours.
+pub(super) struct Places(Vec<(Vec2, usize)>);
+
+impl Places {
+    /// Those who are there. O(people log people).
+    pub fn at<'b>(tick: i32, bodies: impl Iterator<Item = &'b Body>) -> Self {
+        let place = |(person, body): (usize, &Body)| {
+            let root = body.root[frame_at(body, tick)?];
+            Some((Vec2::new(root.x, root.z), person))
+        };
+        let mut all: Vec<(Vec2, usize)> = bodies.enumerate().filter_map(place).collect();
+        all.sort_unstable_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.1.cmp(&b.1)));
+        Self(all)
+    }
+
+    /// People within a distance.
+    pub fn near(&self, position: Vec2, distance: f32) -> impl Iterator<Item = usize> {
+        let first = self.0.partition_point(|(p, _)| p.x < position.x - distance);
+        let row = self.0[first..].iter().take_while(move |(p, _)| p.x <= position.x + distance);
+        row.filter(move |(p, _)| p.distance_squared(position) <= distance * distance).map(|&(_, person)| person)
+    }
+
+    /// Calls `meet` with the figures of all pairs of people whose hips are near enough for them to touch, somebody new in
+    /// each pair. `figure` is asked only for those, once.
+    pub fn pairs(
+        &self,
+        is_new: &[bool],
+        figure: impl Fn(usize) -> Option<Figure>,
+        mut meet: impl FnMut((usize, &Figure), (usize, &Figure)),
+    ) {
+        let figures: Vec<OnceCell<Option<Figure>>> = self.0.iter().map(|_| OnceCell::new()).collect();
+        let figure = |i: usize| figures[i].get_or_init(|| figure(self.0[i].1)).as_ref();
+        for (i, &(here, a)) in self.0.iter().enumerate() {
+            let reached = self.0[i + 1..].iter().take_while(|(there, _)| there.x - here.x <= TOUCHING_HIPS);
+            for (k, &(there, b)) in reached.enumerate() {
+                if !(is_new[a] || is_new[b]) || here.distance_squared(there) > TOUCHING_HIPS * TOUCHING_HIPS {
+                    continue;
+                }
+                if let (Some(first), Some(second)) = (figure(i), figure(i + 1 + k)) {
+                    meet((a, first), (b, second));
+                }
             }
         }
     }

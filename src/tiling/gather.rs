@@ -30,8 +30,6 @@ const SAMPLES: usize = 16;
 const ENOUGH: usize = 3;
 /// A way that this many closings lead along is easy.
 const EASY: usize = 2;
-/// Searches for somebody's way to the end of time.
-const TRIES: usize = 3;
 /// Room that the ends of a patch must have to walls, metres.
 const WALL_ROOM: f32 = 0.4;
 /// Ticks of the first patch that are seen at least.
@@ -286,7 +284,7 @@ fn join(
 pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     if life.begin.tick > 0 {
         let company = Company { to: life.company.from, ..Company::NONE };
-        let way = (0..TRIES).find_map(|_| draft.search(life.begin, Goal::Since(0), company, taste, rng))?;
+        let way = lead(draft, life.begin, Goal::Since(0), company, taste, rng)?;
         life.pieces.splice(..0, way);
     }
     Some(())
@@ -297,8 +295,20 @@ pub(super) fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut C
     let horizon = draft.base.domain.horizon;
     if life.end.tick < horizon {
         let company = Company { from: life.company.to, ..Company::NONE };
-        let way = (0..TRIES).find_map(|_| draft.search(life.end, Goal::Until(horizon), company, taste, rng))?;
-        life.pieces.extend(way);
+        life.pieces.extend(lead(draft, life.end, Goal::Until(horizon), company, taste, rng)?);
     }
     Some(())
+}
+
+/// A way that keeps clear of those who are met, or at least of everybody else.
+fn lead(
+    draft: &mut Draft,
+    from: Port,
+    goal: Goal,
+    company: Company,
+    taste: Taste,
+    rng: &mut ChaCha8Rng,
+) -> Option<Vec<PieceId>> {
+    let tries = [Company::NONE, Company::NONE, company, company];
+    tries.into_iter().find_map(|company| draft.search(from, goal, company, taste, rng))
 }

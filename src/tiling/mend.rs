@@ -10,6 +10,7 @@ use super::bake::uses;
 use super::bridge::Taste;
 use super::draft::Draft;
 use super::faults::{Fault, first_unclean};
+use super::piece::Company;
 use super::rehearsal::segments;
 use super::tracks::{TrackId, Tracks, Window};
 use crate::refine::refine;
@@ -78,7 +79,12 @@ fn rebridge(
         *window = draft.base.widen(*window, WINDOW * rng.random_range(wider.clone()));
         draft.hide(*window);
     }
-    windows.iter().try_for_each(|&w| draft.bridge_window(w, taste, rng))?;
+    // What lets people part from an embrace may be what is wrong here.
+    let apart = rng.random_range(0..2) == 0;
+    windows.iter().try_for_each(|&w| match apart {
+        true => draft.bridge_window_from(w, Company::NONE, taste, rng),
+        false => draft.bridge_window(w, taste, rng),
+    })?;
     windows.iter().all(|&w| is_clean(draft, w)).then_some(())
 }
 

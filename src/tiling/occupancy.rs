@@ -80,6 +80,11 @@ impl Occupancy {
         id
     }
 
+    /// Gives the grid's memory back; from now on only pieces can be asked for.
+    pub fn close(&mut self) {
+        self.cells = Vec::new();
+    }
+
     /// Forgets a piece that is hidden.
     pub fn forget(&mut self, id: PieceId) {
         self.pieces[id as usize] = None;

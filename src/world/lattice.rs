@@ -27,7 +27,9 @@ pub struct Lattice {
     columns: usize,
     rows: usize,
     cell: Vec2,
-    patches: Vec<CrowdPatch>,
+    kinds: Vec<CrowdPatch>,
+    /// Kind of every cell.
+    cells: Vec<usize>,
     /// Index of the first crossing of every patch.
     first: Vec<usize>,
     links: Vec<Option<Link>>,
@@ -41,22 +43,35 @@ impl Lattice {
     /// If their number is not columns x rows, an outline is not the rectangle, or patterns that meet are not mirrors: names
     /// the patch.
     pub fn new(columns: usize, rows: usize, cell: Vec2, patches: Vec<CrowdPatch>) -> Result<Self> {
-        if patches.len() != columns * rows || patches.is_empty() {
-            let problem = format!("expected {columns} x {rows} of them, at least one, found {}", patches.len());
+        let cells = (0..patches.len()).collect();
+        Self::shared(columns, rows, cell, patches, cells)
+    }
+
+    /// The same of a few `kinds` of patches: `cells` says which is where.
+    ///
+    /// # Errors
+    /// As [`Self::new`], or if a cell names a kind that is not there.
+    pub fn shared(columns: usize, rows: usize, cell: Vec2, kinds: Vec<CrowdPatch>, cells: Vec<usize>) -> Result<Self> {
+        if cells.len() != columns * rows || cells.is_empty() {
+            let problem = format!("expected {columns} x {rows} of them, at least one, found {}", cells.len());
             return Err(Error::invalid("lattice", "patches", problem));
         }
-        let first = patches
+        if let Some(bad) = cells.iter().position(|&kind| kind >= kinds.len()) {
+            let problem = format!("expected a kind below {}, found {}", kinds.len(), cells[bad]);
+            return Err(Error::invalid("lattice", format!("patch {bad}"), problem));
+        }
+        let first = cells
             .iter()
-            .scan(0, |next, patch| {
+            .scan(0, |next, &kind| {
                 let first = *next;
-                *next += patch.walkers.len();
+                *next += kinds[kind].walkers.len();
                 Some(first)
             })
             .collect();
-        let mut lattice =
-            Self { columns, rows, cell, patches, first, links: Vec::new(), identities: Identities::default() };
-        (0..lattice.patches.len()).try_for_each(|index| lattice.check(index))?;
-        lattice.links = (0..lattice.patches.len()).flat_map(|index| lattice.links_of(index)).map(Some).collect();
+        let (links, identities) = (Vec::new(), Identities::default());
+        let mut lattice = Self { columns, rows, cell, kinds, cells, first, links, identities };
+        (0..lattice.cells.len()).try_for_each(|index| lattice.check(index))?;
+        lattice.links = (0..lattice.cells.len()).flat_map(|index| lattice.links_of(index)).map(Some).collect();
         lattice.identities = Identities::new(&lattice.links);
         Ok(lattice)
     }
@@ -64,7 +79,7 @@ impl Lattice {
     fn check(&self, index: usize) -> Result<()> {
         let place = format!("patch {index}");
         let outline = rectangle(self.cell);
-        let patch = &self.patches[index];
+        let patch = self.at(index);
         if patch.frame.outline.len() != 4
             || !patch.frame.outline.iter().zip(&outline).all(|(a, b)| a.distance(*b) < 1e-3)
         {
@@ -73,7 +88,7 @@ impl Lattice {
         }
         for edge in [1, 2] {
             let (other, _) = self.neighbour(index, edge);
-            let (own, theirs) = (&patch.frame.patterns[edge], &self.patches[other].frame.patterns[(edge + 2) % 4]);
+            let (own, theirs) = (&patch.frame.patterns[edge], &self.at(other).frame.patterns[(edge + 2) % 4]);
             let mirror = own.mirror();
             let same = |a: &[super::Crossing], b: &[super::Crossing]| {
                 a.len() == b.len()
@@ -92,6 +107,21 @@ impl Lattice {
         Ok(())
     }
 
+    /// The patch of a cell of the macro tile.
+    fn at(&self, index: usize) -> &CrowdPatch {
+        &self.kinds[self.cells[index]]
+    }
+
+    /// The different patches.
+    pub fn kinds(&self) -> &[CrowdPatch] {
+        &self.kinds
+    }
+
+    /// Which of them is in every cell of the macro tile, row by row.
+    pub fn cells(&self) -> &[usize] {
+        &self.cells
+    }
+
     /// Patch on the other side of an edge, and how many copies of the macro tile further it is.
     fn neighbour(&self, index: usize, edge: usize) -> (usize, [i64; 2]) {
         let step = [[0, -1], [1, 0], [0, 1], [-1, 0]][edge];
@@ -108,18 +138,18 @@ impl Lattice {
     }
 
     fn links_of(&self, index: usize) -> impl Iterator<Item = Link> {
-        self.patches[index].walkers.iter().map(move |walker| {
+        self.at(index).walkers.iter().map(move |walker| {
             let (other, shift) = self.neighbour(index, walker.output.edge);
             let port = Port { edge: (walker.output.edge + 2) % 4, index: walker.output.index };
             // Walkers are in the order of their inputs.
-            let before: usize = self.patches[other].frame.patterns[..port.edge].iter().map(|p| p.inputs.len()).sum();
+            let before: usize = self.at(other).frame.patterns[..port.edge].iter().map(|p| p.inputs.len()).sum();
             Link { to: self.first[other] + before + port.index, laps: walker.laps, shift }
         })
     }
 
     /// Period in seconds.
     pub fn period(&self) -> f32 {
-        self.patches[0].frame.period()
+        self.kinds[0].frame.period()
     }
 
     /// Size of a cell, metres.
@@ -129,7 +159,7 @@ impl Lattice {
 
     /// The patch at a cell of the plane.
     pub fn patch(&self, cell: [i64; 2]) -> &CrowdPatch {
-        &self.patches[self.split(cell).0]
+        self.at(self.split(cell).0)
     }
 
     /// Who came in to the patch at `cell` as walker `walker` in `period`. O(1).
@@ -141,7 +171,7 @@ impl Lattice {
     /// Where `walker` of the patch at `cell` goes next: cell, walker there, and how many periods later it comes in there.
     pub fn next(&self, cell: [i64; 2], walker: usize) -> ([i64; 2], usize, u32) {
         let (index, _) = self.split(cell);
-        let leaving = &self.patches[index].walkers[walker];
+        let leaving = &self.at(index).walkers[walker];
         let step = [[0, -1], [1, 0], [0, 1], [-1, 0]][leaving.output.edge];
         let link = self.links[self.first[index] + walker].unwrap_or(Link { to: 0, laps: 0, shift: [0; 2] });
         let to = [cell[0] + step[0], cell[1] + step[1]];

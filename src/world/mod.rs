@@ -23,16 +23,22 @@
 //! | `shape.rs`, `frame.rs`, `valid.rs`, `path.rs`, `patch.rs` | objects, the unsolved patch and what is wrong with it, a walker's curve, the solved patch |
 //! | `assign.rs`, `pairing.rs`, `route.rs` | which input leads to which output and when, on which side of the objects |
 //! | `solve/` | curves without collisions, within the limits of walking; the published particle method, to compare |
-//! | `identity.rs`, `lattice.rs` | who is who over all borders and periods, at any time; endless worlds |
+//! | `lattice.rs` | who is who over all borders and periods (see [`Identities`]); endless worlds |
+//! | `bake.rs` | what is solved, as an immutable [`World`](crate::stage::World) |
 //! | `template.rs`, `plan.rs`, `furnish.rs` | what patches contain, which is where, the world that follows |
+//! | `area/` | worlds from walkable polygons: repaired, cut into convex cells |
+//! | `scene.rs` | scene files: templates, and a map in characters or a picture |
+//! | `gait.rs` | walking cycles out of captures, and steps for everybody |
 //! | `stream.rs` | an endless world around a camera |
 //! | `scenes.rs`, `measure.rs` | the street and the city of the paper; how long patches take |
 
+mod area;
 mod assign;
+mod bake;
 mod band;
 mod frame;
 mod furnish;
-mod identity;
+mod gait;
 mod kinds;
 mod lattice;
 mod limits;
@@ -43,6 +49,7 @@ mod path;
 mod pattern;
 mod plan;
 mod route;
+mod scene;
 pub mod scenes;
 mod shape;
 mod solve;
@@ -51,16 +58,20 @@ mod stream;
 mod template;
 mod valid;
 
+pub use crate::stage::world::{Identities, Link, Person};
+pub use area::{Area, Built, Coordinates, Ground};
+pub use bake::{Placement, bake};
 pub use frame::{Border, FramePatch, Standing, StaticObject};
-pub use identity::{Identities, Link, Person};
+pub use gait::{gait_table, with_gait};
 pub use kinds::{Flow, PatternType, balance};
 pub use lattice::{Lattice, Sighting};
 pub use limits::Limits;
-pub use measure::{Creation, Walk, measure_creation, measure_walk};
+pub use measure::{Creation, Replay, Walk, measure_creation, measure_poses, measure_replay, measure_walk};
 pub use patch::{CrowdPatch, Port, Walker};
 pub use path::Path;
 pub use pattern::{Crossing, Pattern, balanced};
 pub use plan::Plan;
+pub use scene::{Layout, WorldScene};
 pub use shape::Shape;
 pub use solve::{Common, Method, Options, Solution, solve, vary};
 pub use stream::Stream;

@@ -3,14 +3,17 @@
 //! "Crowd Patches" (2009), sections 5.1 and 5.2. Every patch is a function of the plan, the seed and its place alone: patches
 //! can be made in any order, by any process, now or when a camera comes near, and are always the same.
 
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::Vec2;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use super::identity::mix;
 use super::lattice::rectangle;
 use super::{Common, CrowdPatch, FramePatch, Lattice, Limits, Options, Pattern, PatternType, Template, solve, vary};
+use crate::stage::world::mix;
 use crate::{Error, Result};
 
 /// Attempts to furnish and solve a patch; the last is without objects.
@@ -36,6 +39,10 @@ pub struct Plan {
     /// How many patterns there are of each type; few make patches easier to share, many less alike.
     #[serde(default = "patterns")]
     pub patterns: u64,
+    /// How many versions there are of patches with the same template and patterns, so that a large world shares a few kinds; 0
+    /// if every cell is unlike all others.
+    #[serde(default)]
+    pub versions: u64,
     /// Same seed, same world.
     #[serde(default)]
     pub seed: u64,
@@ -72,8 +79,16 @@ impl Plan {
             cells.push(text.chars().enumerate().map(find).collect::<Result<Vec<usize>>>()?);
         }
         cells.reverse();
-        let plan =
-            Self { templates, cells, side: side(), period: period(), endless: false, patterns: patterns(), seed: 0 };
+        let plan = Self {
+            templates,
+            cells,
+            side: side(),
+            period: period(),
+            endless: false,
+            patterns: patterns(),
+            versions: 0,
+            seed: 0,
+        };
         plan.validate()?;
         Ok(plan)
     }
@@ -138,22 +153,48 @@ impl Plan {
 
     /// The pattern on the right (edge 1) or upper (edge 2) border of a cell, as the cell sees it.
     fn border(&self, column: usize, row: usize, edge: usize) -> Result<Pattern> {
+        match self.border_key(column, row, edge) {
+            Some(key) => {
+                // One of a few patterns of the type, as the template that comes first sees it.
+                let [first, second, variant, mirrored] = key;
+                let seed = [first, second, variant].into_iter().fold(self.seed, mix);
+                let mut rng = ChaCha8Rng::seed_from_u64(seed);
+                let kind = self.border_type(first as usize, second as usize).unwrap_or(PatternType::empty());
+                let pattern = kind.generate(self.side, self.period, &Limits::default(), &mut rng)?;
+                Ok(if mirrored == 0 { pattern } else { pattern.mirror() })
+            }
+            None => Ok(Pattern::empty(self.side, self.period)),
+        }
+    }
+
+    /// What decides the pattern on a cell's right or upper border: the two templates, which of a few patterns, and whether the cell
+    /// sees its mirror image; none if nobody crosses.
+    fn border_key(&self, column: usize, row: usize, edge: usize) -> Option<[u64; 4]> {
         let (columns, rows) = self.size();
         let outer = if edge == 1 { column + 1 == columns } else { row + 1 == rows };
         let (right, above) = if edge == 1 { ((column + 1) % columns, row) } else { (column, (row + 1) % rows) };
         let (here, there) = (self.cells[row][column], self.cells[above][right]);
         let place = [edge, column, row].into_iter().fold(self.seed, |hash, part| mix(hash, part as u64));
-        match self.border_type(here.min(there), here.max(there)) {
-            Some(kind) if self.endless || !outer => {
-                // One of a few patterns of the type, as the template that comes first sees it.
-                let types = [here.min(there), here.max(there)].map(|index| index as u64);
-                let seed = [types[0], types[1], place % self.patterns.max(1)].into_iter().fold(self.seed, mix);
-                let mut rng = ChaCha8Rng::seed_from_u64(seed);
-                let pattern = kind.generate(self.side, self.period, &Limits::default(), &mut rng)?;
-                Ok(if here <= there { pattern } else { pattern.mirror() })
-            }
-            _ => Ok(Pattern::empty(self.side, self.period)),
+        self.border_type(here.min(there), here.max(there)).filter(|_| self.endless || !outer)?;
+        let [first, second] = [here.min(there), here.max(there)].map(|index| index as u64);
+        Some([first, second, place % self.patterns.max(1), u64::from(here > there)])
+    }
+
+    /// What decides all of a cell: cells of the same key have the same patch.
+    fn cell_key(&self, column: usize, row: usize) -> u64 {
+        let (columns, rows) = self.size();
+        let (left, below) = ((column + columns - 1) % columns, (row + rows - 1) % rows);
+        let borders = [(column, below, 2), (column, row, 1), (column, row, 2), (left, row, 1)];
+        let borders = borders.map(|(column, row, edge)| self.border_key(column, row, edge));
+        let place = mix(mix(self.seed, column as u64), row as u64);
+        let template = self.template(column, row);
+        let bare = template.furnishings.is_empty() && template.gatherings.is_empty();
+        if self.versions == 0 && !(bare && borders.iter().all(Option::is_none)) {
+            return place;
         }
+        let version = if bare && borders.iter().all(Option::is_none) { 0 } else { place % self.versions };
+        let parts = borders.iter().flat_map(|b| b.unwrap_or([u64::MAX; 4]));
+        parts.chain([self.cells[row][column] as u64, version]).fold(!self.seed, mix)
     }
 
     /// Pattern type between two templates, as the first sees it.
@@ -169,7 +210,7 @@ impl Plan {
     /// If the patterns have no room, are not balanced, or no way is found even without objects.
     pub fn patch(&self, column: usize, row: usize) -> Result<CrowdPatch> {
         let bare = self.frame(column, row)?;
-        let place = mix(mix(self.seed, column as u64), row as u64);
+        let place = self.cell_key(column, row);
         let cell = || format!("column {column}, row {row}");
         for attempt in 0..ATTEMPTS {
             let frame = self.furnished(&bare, column, row, mix(place, attempt), attempt + 1 == ATTEMPTS);
@@ -225,10 +266,32 @@ impl Plan {
     /// # Errors
     /// As [`Self::patch`].
     pub fn build(&self) -> Result<Lattice> {
+        self.build_watched(&|_, _| true)
+    }
+
+    /// The same; `progress` is told how many of how many patches are done, and stops the work by returning false.
+    ///
+    /// # Errors
+    /// As [`Self::patch`], and if it was stopped.
+    pub fn build_watched(&self, progress: &(dyn Fn(usize, usize) -> bool + Sync)) -> Result<Lattice> {
         self.validate()?;
         let (columns, rows) = self.size();
-        let patches: Result<Vec<CrowdPatch>> =
-            (0..columns * rows).into_par_iter().map(|i| self.patch(i % columns, i / columns)).collect();
-        Lattice::new(columns, rows, Vec2::splat(self.side), patches?)
+        let (mut index, mut first) = (BTreeMap::new(), Vec::new());
+        let mut cells = Vec::with_capacity(columns * rows);
+        for cell in 0..columns * rows {
+            let kind = *index.entry(self.cell_key(cell % columns, cell / columns)).or_insert_with(|| {
+                first.push(cell);
+                first.len() - 1
+            });
+            cells.push(kind);
+        }
+        let done = AtomicUsize::new(0);
+        let make = |&cell: &usize| {
+            let patch = self.patch(cell % columns, cell / columns)?;
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            if progress(done, first.len()) { Ok(patch) } else { Err(Error::Stopped) }
+        };
+        let kinds: Result<Vec<CrowdPatch>> = first.par_iter().map(make).collect();
+        Lattice::shared(columns, rows, Vec2::splat(self.side), kinds?, cells)
     }
 }

@@ -3,6 +3,7 @@
 import type { FrameStats, Picture } from "./draw/picture";
 import type { Player } from "./play/player";
 import type { State, Store } from "./store";
+import type { WorldPage } from "./world/page";
 
 export interface Handle {
   /** Resolves with the first picture of the crowd; rejects with the message shown on the page. */
@@ -26,6 +27,8 @@ export interface Handle {
 declare global {
   interface Window {
     crowdquilt: Handle;
+    /** The page of a world, if one is shown. */
+    crowdquiltWorld?: WorldPage;
   }
 }
 

@@ -1,27 +1,31 @@
-/** Fetches what is to be shown, a crowd or a patch set, and the report of a crowd if there is one. */
+/** Fetches what is to be shown, a crowd, a patch set or a world, and the report of a crowd if there is one. */
 
 import type { Crowd } from "./crowd/model";
 import { readCrowd } from "./crowd/reader";
 import { parseReport, type Report } from "./report";
 import type { PatchSet } from "./set/model";
 import { readSet, MAGIC as SET } from "./set/reader";
+import type { World } from "./world/model";
+import { readWorld, MAGIC as WORLD } from "./world/reader";
 
 export interface Shown {
   crowd?: Crowd;
   set?: PatchSet;
+  world?: World;
 }
 
-/** The crowd or set at `url`, told by its first bytes. Throws an Error that names the address and what is wrong. */
+/** The crowd, set or world at `url`, told by its first bytes. Throws an Error that names the address and what is wrong. */
 export async function loadShown(url: string): Promise<Shown> {
   const response = await fetch(url).catch(() => null);
   if (!response) throw new Error(`${url}: the server does not answer. Is it still running?`);
   if (!response.ok)
     throw new Error(
-      `${url}: expected a crowd or a patch set, the server says ${response.status} ${response.statusText}.`,
+      `${url}: expected a crowd, a patch set or a world, the server says ${response.status} ${response.statusText}.`,
     );
   const bytes = await response.arrayBuffer();
   try {
     const magic = new TextDecoder("latin1").decode(bytes.slice(0, SET.length));
+    if (magic === WORLD) return { world: readWorld(bytes) };
     return magic === SET ? { set: readSet(bytes) } : { crowd: readCrowd(bytes) };
   } catch (error) {
     throw new Error(`${url}: ${(error as Error).message}.`);

@@ -18,6 +18,8 @@ import { openSet } from "./set/page";
 import { COLOR_MODES, OUTLINES, Store } from "./store";
 import { installKeys } from "./tools/keys";
 import { installPicking } from "./tools/picking";
+import type { World } from "./world/model";
+import { WorldPage } from "./world/page";
 
 const parameters = readParameters(location.search);
 const canvas = document.querySelector("canvas") as HTMLCanvasElement;
@@ -64,7 +66,8 @@ function openPicture(): Picture | null {
 
 async function start(shown: Picture): Promise<void> {
   try {
-    const { set, crowd } = await loadShown(parameters.crowd);
+    const { set, crowd, world } = await loadShown(parameters.crowd);
+    if (world) return await openWorld(world, shown);
     // The signs on the floor are painted once, in the page's font.
     if (set) await document.fonts.load('600 44px "Inter Variable"');
     if (set) openSet(set, parameters.kind, { parent: page, track }, store, player, shown);
@@ -79,8 +82,22 @@ async function start(shown: Picture): Promise<void> {
     store.set("follow", parameters.follow);
   }
   store.set("playing", !parameters.paused);
-  animate(shown);
+  animate((seconds) => {
+    player.tick(seconds);
+    shown.frame(seconds);
+  });
   while (shown.stats.pictures === 0) await new Promise(requestAnimationFrame);
+}
+
+/** A world has a page of its own: one walks in it. */
+async function openWorld(world: World, shown: Picture): Promise<void> {
+  page.replaceChildren();
+  const walk = new WorldPage(world, shown.stage.renderer, page);
+  walk.time = parameters.t;
+  walk.playing = !parameters.paused;
+  window.crowdquiltWorld = walk;
+  animate((seconds) => walk.frame(seconds));
+  while (walk.stats.pictures === 0) await new Promise(requestAnimationFrame);
 }
 
 function openCrowd(crowd: Crowd, shown: Picture): void {
@@ -91,13 +108,12 @@ function openCrowd(crowd: Crowd, shown: Picture): void {
   void loadReport(parameters.report).then((report) => store.set("report", report));
 }
 
-function animate(shown: Picture): void {
+function animate(draw: (seconds: number) => void): void {
   let last = performance.now();
   const next = (time: number) => {
     const seconds = Math.max(time - last, 0) / 1000;
     last = time;
-    player.tick(seconds);
-    shown.frame(seconds);
+    draw(seconds);
     requestAnimationFrame(next);
   };
   requestAnimationFrame(next);

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 from crowdquilt._core import CrowdquiltError
-from crowdquilt.cli import captures, crowds, sets, showing, whole  # noqa: F401  (each adds its commands to the app)
+from crowdquilt.cli import captures, crowds, sets, showing, whole, world  # noqa: F401  (each adds its commands to the app)
 from crowdquilt.cli.app import BAD_INPUT, app
 
 

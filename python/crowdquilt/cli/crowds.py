@@ -15,6 +15,8 @@ from crowdquilt._core import Crowd, CrowdquiltError, Outcome, PatchSet, Scene
 from crowdquilt.cli.app import CHECK_FAILED, NOT_PERFECT, app, console, example
 from crowdquilt.cli.progress import solve
 from crowdquilt.cli.tables import check_table
+from crowdquilt.cli.world import check_world
+from crowdquilt.world import holds_world
 
 
 class Method(StrEnum):
@@ -98,12 +100,15 @@ def name_files(message: str, scene: Path | None, patches: Path) -> str:
     return message
 
 
-@app.command("check", epilog=example("check out/demo/crowd.crowd"))
+@app.command("check", epilog=example("check out/demo/crowd.crowd", "check out/city.world"))
 def check_file(
-    crowd: Annotated[Path, typer.Argument(help="Crowd (.crowd).")],
+    crowd: Annotated[Path, typer.Argument(help="Crowd (.crowd) or world (.world).")],
     as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
 ) -> None:
-    """Verify a finished crowd from its file alone. Exit code 1 if a row fails."""
+    """Verify a finished crowd or world from its file alone. Exit code 1 if a row fails."""
+    if holds_world(crowd):
+        check_world(crowd, as_json)
+        return
     found = Crowd.load(crowd)
     result = check.check(found)
     if as_json:

@@ -41,15 +41,18 @@ def plot(
     console.print(f"{out}: written")
 
 
-@app.command(epilog=example("view out/demo/crowd.crowd", "view people.patches"))
+@app.command(epilog=example("view out/demo/crowd.crowd", "view out/street.world", "view people.patches"))
 def view(
-    crowd: Annotated[Path, typer.Argument(help="Crowd (.crowd) or patch set (.patches).")] = Path(
+    crowd: Annotated[Path, typer.Argument(help="Crowd (.crowd), world (.world) or patch set (.patches).")] = Path(
         "out/demo/crowd.crowd"
     ),
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port on this machine; a free one if 0.")] = 0,
     no_open: Annotated[bool, typer.Option("--no-open", help="Do not open a browser.")] = False,
 ) -> None:
-    """Watch a crowd, or the kinds of a patch set, in the browser, served from this machine to this machine only."""
+    """Watch a crowd, walk through a world, or see the kinds of a patch set in the browser.
+
+    It is served from this machine to this machine only.
+    """
     from crowdquilt import server
 
     server.serve(crowd, port, open_browser=not no_open, say=lambda line: console.print(line, soft_wrap=True))

@@ -5,11 +5,13 @@
 //! may leave a chord by (acceleration x time^2 / 8, the acceleration of a cubic spline being greatest at its knots)
 //! counts against it.
 
+mod baked;
 mod curve;
 mod distance;
 mod patch;
 mod tiles;
 
+pub use baked::check_world;
 pub use patch::{PatchReport, check_patch};
 pub use tiles::{Placed, TilesReport, check_tiles};
 

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::ROUNDING;
 use super::curve::{CHORDS, Curve};
 use super::distance::{to_origin, to_shape};
-use crate::world::{Crossing, CrowdPatch, Limits, Port, Shape, Walker};
+use crate::world::{Crossing, CrowdPatch, Limits, Path, Port, Shape, Walker};
 
 /// What was found in one patch. Distances are lower bounds, speeds and accelerations upper bounds.
 #[derive(Clone, Debug, Default)]
@@ -157,7 +157,7 @@ fn check_crossings(patch: &CrowdPatch, walker: &Walker, curve: &Curve, limits: &
 
 fn check_limits(walker: &Walker, curve: &Curve, limits: &Limits, report: &mut PatchReport, found: &mut Vec<String>) {
     let acceleration = curve.accelerations.iter().copied().fold(0.0, f64::max);
-    let turning = turning(walker, f64::from(limits.standing));
+    let turning = turning(&walker.path, f64::from(limits.standing));
     let slowest = curve.velocities.iter().map(|v| v.length()).fold(f64::INFINITY, f64::min);
     let over = [
         ("speed", curve.speed, limits.speed),
@@ -176,10 +176,10 @@ fn check_limits(walker: &Walker, curve: &Curve, limits: &Limits, report: &mut Pa
 }
 
 /// Greatest turning while faster than `standing`, sampled sixteen times per step.
-fn turning(walker: &Walker, standing: f64) -> f64 {
+pub(super) fn turning(path: &Path, standing: f64) -> f64 {
     const SAMPLES: usize = 16;
-    let p: Vec<DVec2> = walker.path.points.iter().map(|p| p.as_dvec2()).collect();
-    let step = f64::from(walker.path.step);
+    let p: Vec<DVec2> = path.points.iter().map(|p| p.as_dvec2()).collect();
+    let step = f64::from(path.step);
     let mut greatest = 0.0_f64;
     for w in p.windows(4) {
         let (d0, d1, d2) = (w[1] - w[0], w[2] - w[1], w[3] - w[2]);

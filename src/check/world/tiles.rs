@@ -52,11 +52,13 @@ impl TilesReport {
 
 /// Somebody during one chord.
 #[derive(Clone, Copy, Debug)]
-struct Body {
-    from: DVec2,
-    to: DVec2,
-    sag: f64,
-    tile: usize,
+pub(super) struct Body {
+    pub from: DVec2,
+    pub to: DVec2,
+    /// How far it may leave the line between.
+    pub sag: f64,
+    /// The patch it is in.
+    pub tile: usize,
 }
 
 /// Checks the patches of a world over a whole period, everybody against everybody near. With `torus` the world repeats
@@ -113,7 +115,7 @@ fn bodies(tiles: &[Placed], curves: &[Vec<Curve>], chord: i64, chords: i64, secs
 }
 
 /// Least distance of any two bodies, by cells of a metre and a bit; and the tile of one.
-fn closest(bodies: &[Body], torus: Option<Vec2>, limits: &Limits) -> (f64, usize) {
+pub(super) fn closest(bodies: &[Body], torus: Option<Vec2>, limits: &Limits) -> (f64, usize) {
     let size = 2.0 * f64::from(limits.radius) + 2.0 * f64::from(limits.speed) * 0.1;
     let cells = torus.map(|t| (t.as_dvec2() / size).floor());
     let cell = |p: DVec2| match (torus, cells) {

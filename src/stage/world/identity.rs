@@ -38,7 +38,7 @@ impl Person {
 }
 
 /// One step of splitmix64 over `hash` and a `value`.
-pub(super) fn mix(hash: u64, value: u64) -> u64 {
+pub(crate) fn mix(hash: u64, value: u64) -> u64 {
     let mut z = (hash ^ value.wrapping_mul(0x2545_f491_4f6c_dd1d)).wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -48,22 +48,41 @@ pub(super) fn mix(hash: u64, value: u64) -> u64 {
 /// Identities of all walkers of a world.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Identities {
-    /// Cycle, periods and copies since its begin, of every crossing.
-    crossings: Vec<(u32, i64, [i64; 2])>,
-    /// Periods (= people; 0 if the way leads out of the world) and copies once around, of every cycle.
-    cycles: Vec<(i64, [i64; 2])>,
+    /// Of every crossing.
+    crossings: Vec<Place>,
+    /// Of every cycle.
+    cycles: Vec<Round>,
 }
+
+/// Where on its cycle a crossing is: periods and copies of the world since the cycle's begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    pub cycle: u32,
+    pub laps: i32,
+    pub copies: [i32; 2],
+}
+
+/// Once around a cycle: periods (= people; 0 if the way leads out of the world) and copies of the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Round {
+    pub people: u32,
+    pub copies: [i32; 2],
+}
+
+/// A cycle that is not known yet.
+const NONE: u32 = u32::MAX;
 
 impl Identities {
     /// Follows `links`, one per crossing; `None` leads out of the world. No two may lead to the same crossing. O(crossings).
     pub fn new(links: &[Option<Link>]) -> Self {
         let mut reached = vec![false; links.len()];
         links.iter().flatten().for_each(|link| reached[link.to] = true);
-        let mut found = Self { crossings: vec![(u32::MAX, 0, [0; 2]); links.len()], cycles: Vec::new() };
+        let unknown = Place { cycle: NONE, laps: 0, copies: [0; 2] };
+        let mut found = Self { crossings: vec![unknown; links.len()], cycles: Vec::new() };
         // Ways that begin at the border of the world first; all others are cycles.
         let (inner, outer): (Vec<usize>, Vec<usize>) = (0..links.len()).partition(|&c| reached[c]);
         for begin in outer.into_iter().chain(inner) {
-            if found.crossings[begin].0 == u32::MAX {
+            if found.crossings[begin].cycle == NONE {
                 found.follow(begin, links);
             }
         }
@@ -74,27 +93,51 @@ impl Identities {
         let cycle = self.cycles.len() as u32;
         let (mut at, mut laps, mut copies) = (begin, 0, [0; 2]);
         loop {
-            self.crossings[at] = (cycle, laps, copies);
+            self.crossings[at] = Place { cycle, laps, copies };
             let Some(link) = links[at] else {
-                return self.cycles.push((0, [0; 2]));
+                return self.cycles.push(Round { people: 0, copies: [0; 2] });
             };
-            laps += i64::from(link.laps);
-            copies = [copies[0] + link.shift[0], copies[1] + link.shift[1]];
+            laps += link.laps as i32;
+            copies = [copies[0] + link.shift[0] as i32, copies[1] + link.shift[1] as i32];
             at = link.to;
             if at == begin {
-                return self.cycles.push((laps, copies));
+                return self.cycles.push(Round { people: laps as u32, copies });
             }
         }
     }
 
     /// Who comes in at `crossing` of the world's copy `copy` in `period`. O(1).
     pub fn of(&self, crossing: usize, copy: [i64; 2], period: i64) -> Person {
-        let (cycle, laps, copies) = self.crossings[crossing];
-        let (people, around) = self.cycles[cycle as usize];
-        let since = period - laps;
+        let place = self.crossings[crossing];
+        let round = self.cycles[place.cycle as usize];
+        let (people, since) = (i64::from(round.people), period - i64::from(place.laps));
         let rounds = if people > 0 { since.div_euclid(people) } else { 0 };
-        let back = |axis: usize| copy[axis] - copies[axis] - rounds * around[axis];
-        Person { cycle, copy: [back(0), back(1)], number: since - rounds * people }
+        let back = |axis: usize| copy[axis] - i64::from(place.copies[axis]) - rounds * i64::from(round.copies[axis]);
+        Person { cycle: place.cycle, copy: [back(0), back(1)], number: since - rounds * people }
+    }
+
+    /// From what a file holds. The caller has checked that every crossing's cycle is there.
+    pub(super) fn from_parts(crossings: Vec<Place>, cycles: Vec<Round>) -> Self {
+        Self { crossings, cycles }
+    }
+
+    pub(super) fn parts(&self) -> (&[Place], &[Round]) {
+        (&self.crossings, &self.cycles)
+    }
+
+    /// The cycle of a crossing.
+    pub fn cycle(&self, crossing: usize) -> u32 {
+        self.crossings[crossing].cycle
+    }
+
+    /// Periods from the cycle's begin to a crossing.
+    pub fn laps(&self, crossing: usize) -> i64 {
+        self.crossings[crossing].laps.into()
+    }
+
+    /// Whether a cycle is a way through the world rather than a round in it.
+    pub fn leads_out(&self, cycle: u32) -> bool {
+        self.cycles[cycle as usize].people == 0
     }
 
     /// How many cycles (and ways through the world) there are.
@@ -104,7 +147,7 @@ impl Identities {
 
     /// How many people walk on the cycles of one copy of the world; those on ways through it are not counted.
     pub fn people(&self) -> u64 {
-        self.cycles.iter().map(|&(people, _)| people as u64).sum()
+        self.cycles.iter().map(|round| u64::from(round.people)).sum()
     }
 }
 

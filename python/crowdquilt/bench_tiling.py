@@ -1,0 +1,113 @@
+"""The rows of `crowdquilt bench tiling`: the paper's static scenes, denser and larger ones, its Algorithms 1 and 2."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from statistics import median
+
+from crowdquilt import check
+from crowdquilt._core import Outcome, PatchSet, Scene, tile
+
+PAPER = "Hyun et al. 2013, table 1 and section 7, 2.93 GHz Core i7"
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One measured figure of a row."""
+
+    row: str
+    name: str
+    value: float
+    unit: str = ""
+    reference: float | None = None
+
+
+@dataclass(frozen=True)
+class Static:
+    """A scene of 12 x 12 m and 20 s; the paper's patches, characters and seconds where it has such a one."""
+
+    row: str
+    characters: int
+    interaction: float
+    patches: float | None = None
+    people: float | None = None
+    secs: float | None = None
+
+
+STATIC = (
+    Static("static-173", 18, 0.3, 173, 16, 0.3 * 60),
+    Static("static-374", 38, 0.3, 374, 34, 2 * 60),
+    Static("static-490", 50, 0.3, 490, 48, 12 * 60),
+    Static("static-657", 68, 0.3, 657, 60, 17 * 60),
+    Static("static-907", 94, 0.3, 907, 70, 103 * 60),
+    Static("density-144", 144, 0.25),
+    Static("density-max", 200, 0.15),
+)
+SIDES = (8, 16, 32)
+"""Sides of the squares over which growth is measured, metres."""
+BASELINE = ("static-173", "static-374", "static-490")
+"""Rows at which Algorithms 1 and 2 are measured as well."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """One crowd, checked."""
+
+    outcome: Outcome
+    summary: check.Summary
+    ok: bool
+
+
+def runs(scene: Scene, patches: PatchSet, seeds: int, method: str = "engine") -> list[Run]:
+    """A crowd for each of the seeds from 1 on."""
+    found = []
+    for seed in range(1, seeds + 1):
+        outcome = tile(scene, patches, seed=seed, method=method)
+        ok = outcome.status == "perfect" and check.check(outcome.crowd).ok
+        found.append(Run(outcome, check.summary(outcome.crowd), ok))
+    return found
+
+
+def static(scene: Static, patches: PatchSet, seeds: int, say: Say) -> list[Figure]:
+    """The figures of a static scene: medians over the seeds, and the slowest."""
+    wish = Scene.demo().replace(characters=scene.characters, interaction=scene.interaction)
+    made = runs(wish, patches, seeds)
+    figures = figures_of(scene, made, "")
+    if scene.row in BASELINE:
+        figures += figures_of(scene, runs(wish, patches, min(seeds, 2), "paper"), "Algorithms 1 and 2 here: ")
+    say(f"tiling: {scene.row}: {figures[0].value:.2f} s, {sum(r.ok for r in made)} of {seeds} perfect and checked")
+    return figures
+
+
+def figures_of(scene: Static, made: list[Run], prefix: str) -> list[Figure]:
+    """What is told of a scene's runs."""
+
+    def figure(name: str, value: float, unit: str = "", reference: float | None = None) -> Figure:
+        return Figure(scene.row, prefix + name, value, unit, reference)
+
+    return [
+        figure("solve time, median", median(r.outcome.solve_secs for r in made), "s", scene.secs),
+        figure("solve time, slowest", max(r.outcome.solve_secs for r in made), "s", scene.secs),
+        figure("characters, fewest", min(r.summary.characters for r in made), "", scene.people),
+        figure("patches placed, fewest", min(r.summary.instances for r in made), "", scene.patches),
+        figure("share of time in patches of two or more, least", min(r.summary.multi_person_share for r in made)),
+        figure("danglings, all runs", sum(r.summary.danglings for r in made), "", 0.0),
+        figure("perfect and checked, share", sum(r.ok for r in made) / len(made)),
+    ]
+
+
+def growth(patches: PatchSet, say: Say) -> list[Figure]:
+    """Time per character as the square grows, half a person per square metre."""
+    figures = []
+    for side in SIDES:
+        corners = f"[[0, 0], [{side}, 0], [{side}, {side}], [0, {side}]]"
+        text = f"region = {corners}\nduration_secs = 20\ndensity = 0.5\ninteraction = 0.26\n"
+        run = runs(Scene.from_toml(text), patches, 1)[0]
+        people = run.summary.characters
+        figures.append(Figure("area-growth", f"{side} x {side} m, {people} people", run.outcome.solve_secs, "s"))
+        per_person = 1000 * run.outcome.solve_secs / people
+        figures.append(Figure("area-growth", f"{side} x {side} m, per character", per_person, "ms"))
+        say(f"tiling: area-growth: {people} people in {run.outcome.solve_secs:.2f} s")
+    return figures

@@ -1,0 +1,188 @@
+//! Full bodies of walkers: a table of walking poses by speed and phase, and how far through its steps everybody is.
+//!
+//! A pose depends on speed and phase alone, so a crowd of any size shares one small table. Phases go on over borders and
+//! periods: along a cycle of crossings the steps that people take add up to a whole number (everybody walks a trifle faster or
+//! slower for that), and each crossing stores the phase it begins with. So the phase at any time is a function of the time, like
+//! all else. Stride and cadence go together: strides are interpolated between the cycles of the table, cadence is speed
+//! by stride, so that a planted foot goes back as fast as the body goes on.
+
+use glam::{Quat, Vec2, Vec3};
+
+use super::tables::expect;
+use super::{Spot, World};
+use crate::Result;
+use crate::motion::JOINT_COUNT;
+
+/// Steps are stored in this part of a cycle of two steps.
+pub(crate) const STEPS_PER_CYCLE: f32 = 512.0;
+/// Headings are stored in this part of a radian.
+pub(crate) const PER_RADIAN: f32 = 32_768.0 / std::f32::consts::PI;
+
+/// Walking cycles of rising speed, the first of which stands; all begin as the right leg swings past the planted left.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GaitTable {
+    /// Speed of every cycle, m/s, rising from 0.
+    pub speeds: Vec<f32>,
+    /// Metres of every cycle (two steps); 0 for the first.
+    pub strides: Vec<f32>,
+    /// Poses of a cycle.
+    pub phases: usize,
+    /// Rotations of all joints, cycle by cycle, pose by pose: the hips' relative to where somebody walks to, all others local.
+    pub rotations: Vec<Quat>,
+    /// Hips of every pose, relative to where somebody is: x to the left, y up, z ahead.
+    pub hips: Vec<Vec3>,
+}
+
+/// A walker's body at some time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Walking {
+    /// Where it is, metres.
+    pub place: Vec2,
+    /// Its velocity, m/s.
+    pub velocity: Vec2,
+    /// Where it looks, radians about the vertical, 0 along +z.
+    pub heading: f32,
+    /// How far through its cycle of two steps it is, 0 to 1.
+    pub phase: f32,
+}
+
+/// What the tables say about bodies.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Gait {
+    /// The poses.
+    pub table: GaitTable,
+    /// Cycles since it came in of every walker of every kind, at the begin of every slot of its stay and at its end.
+    pub steps: Vec<i16>,
+    /// Where it looks at these times.
+    pub headings: Vec<i16>,
+    /// Phase at which every crossing begins.
+    pub crossing_phases: Vec<f32>,
+    /// By how much people on a cycle walk faster: a factor about 1.
+    pub cycle_paces: Vec<f32>,
+}
+
+impl GaitTable {
+    /// Cycles per second at a speed.
+    pub fn cadence(&self, speed: f32) -> f32 {
+        let (low, share) = self.between(speed);
+        let stride = self.strides[low] + share * (self.strides[low + 1] - self.strides[low]);
+        // Below the slowest cycle strides shrink with speed, and cadence stays.
+        let slowest = self.speeds[1] / self.strides[1].max(0.1);
+        if low == 0 { slowest } else { speed / stride.max(0.1) }
+    }
+
+    /// The cycle below a speed, and how far to the next.
+    fn between(&self, speed: f32) -> (usize, f32) {
+        let last = self.speeds.len() - 2;
+        let low = self.speeds[1..=last].iter().take_while(|&&s| s <= speed).count().min(last);
+        let (a, b) = (self.speeds[low], self.speeds[low + 1]);
+        (low, ((speed - a) / (b - a)).clamp(0.0, 1.0))
+    }
+
+    /// The pose at a speed and phase, and the hips relative to where somebody is. No allocation.
+    pub fn pose(&self, speed: f32, phase: f32, pose: &mut [Quat; JOINT_COUNT]) -> Vec3 {
+        let (low, fast) = self.between(speed);
+        let at = phase.rem_euclid(1.0) * self.phases as f32;
+        let first = (at as usize).min(self.phases - 1);
+        let late = at - first as f32;
+        let next = if first + 1 < self.phases { first + 1 } else { 0 };
+        let index = |cycle: usize, phase: usize| cycle * self.phases + phase;
+        let of = [index(low, first), index(low, next), index(low + 1, first), index(low + 1, next)];
+        let weights = [(1.0 - fast) * (1.0 - late), (1.0 - fast) * late, fast * (1.0 - late), fast * late];
+        let rows = of.map(|pose| &self.rotations[pose * JOINT_COUNT..(pose + 1) * JOINT_COUNT]);
+        for (joint, out) in pose.iter_mut().enumerate() {
+            let sum = rows[0][joint] * weights[0]
+                + rows[1][joint] * weights[1]
+                + rows[2][joint] * weights[2]
+                + rows[3][joint] * weights[3];
+            *out = sum.normalize();
+        }
+        of.iter().zip(weights).map(|(&pose, weight)| self.hips[pose] * weight).sum()
+    }
+
+    fn validate(&self) -> Result<()> {
+        let cycles = self.speeds.len();
+        let shape = (2..=64).contains(&cycles) && self.strides.len() == cycles && (1..=1024).contains(&self.phases);
+        expect(shape, "gait_speeds", || format!("{cycles} cycles of {} phases", self.phases))?;
+        let rising = self.speeds[0] == 0.0
+            && self.speeds.windows(2).all(|w| w[1] > w[0] + 1e-3)
+            && self.speeds[cycles - 1] < 20.0;
+        expect(rising, "gait_speeds", || format!("{:?}", self.speeds))?;
+        let strides = self.strides.iter().all(|s| (0.0..20.0).contains(s));
+        expect(strides && self.strides[1] > 0.0, "gait_strides", || format!("{:?}", self.strides))?;
+        let poses = cycles * self.phases;
+        expect(self.hips.len() == poses, "gait_hips", || format!("{} places instead of {poses}", self.hips.len()))?;
+        let found = self.rotations.len();
+        expect(found == poses * JOINT_COUNT, "gait_rotations", || format!("{found} rotations for {poses} poses"))?;
+        let finite = self.hips.iter().all(|h| h.is_finite()) && self.rotations.iter().all(|q| q.is_finite());
+        expect(finite, "gait_rotations", || "a number that is none".into())
+    }
+}
+
+impl Walking {
+    /// Root and rotations of the canonical skeleton for this body, in the frame of its place. No allocation.
+    pub fn pose(&self, table: &GaitTable, pose: &mut [Quat; JOINT_COUNT]) -> Vec3 {
+        let hips = table.pose(self.velocity.length(), self.phase, pose);
+        let turn = Quat::from_rotation_y(self.heading);
+        pose[0] = turn * pose[0];
+        turn * hips + Vec3::new(self.place.x, 0.0, self.place.y)
+    }
+}
+
+impl Gait {
+    /// Whether it fits a world whose walkers stay so many slots, with so many crossings and cycles.
+    pub(super) fn validate(&self, stays: u64, crossings: usize, cycles: usize) -> Result<()> {
+        self.table.validate()?;
+        let (steps, headings) = (self.steps.len() as u64, self.headings.len() as u64);
+        expect(steps == stays, "gait_steps", || format!("{steps} numbers instead of {stays}"))?;
+        expect(headings == stays, "gait_headings", || format!("{headings} numbers instead of {stays}"))?;
+        let (phases, paces) = (self.crossing_phases.len(), self.cycle_paces.len());
+        expect(phases == crossings, "crossing_phases", || format!("{phases} numbers instead of {crossings}"))?;
+        expect(paces == cycles, "cycle_paces", || format!("{paces} numbers instead of {cycles}"))?;
+        let finite = self.crossing_phases.iter().chain(&self.cycle_paces).all(|v| v.is_finite() && v.abs() < 1e3);
+        expect(finite, "crossing_phases", || "a number that is no phase".into())
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        let table = 16 * self.table.rotations.len() + 12 * self.table.hips.len() + 8 * self.table.speeds.len();
+        table + 2 * (self.steps.len() + self.headings.len()) + 4 * (self.crossing_phases.len() + self.cycle_paces.len())
+    }
+}
+
+impl World {
+    /// Bodies of all who walk in a patch at `time` (seconds, any), in the order of [`World::roots`]; none if the world has no gait.
+    /// Places are relative to the patch's own origin, turned as the patch is. O(1) for each.
+    pub fn bodies(&self, spot: Spot, time: f64) -> impl Iterator<Item = Walking> {
+        let moment = self.moment(time);
+        let instance = spot.instance as usize;
+        let own = moment.later(self.tables.instance_phases[instance], self.info().slots);
+        let at = time / f64::from(self.info().period_secs) * f64::from(self.info().slots);
+        let fraction = (at - at.floor()) as f32;
+        let kind = self.kind_of(instance);
+        let turn = self.turn(instance);
+        let lanes = self.rows.lanes(&self.tables, kind, own.slot);
+        lanes.enumerate().filter_map(move |(index, lane)| {
+            let gait = self.tables.gait.as_ref()?;
+            let (place, velocity) = self.rows.lane(&self.tables, kind, index, &own);
+            let (first, enter) = self.tracks[self.first_walker[kind] as usize + lane.walker()];
+            let slot = i64::from(own.slot) + lane.lap() * i64::from(self.info().slots) - i64::from(enter);
+            let at = first as usize + slot as usize;
+            let steps = mixed(gait.steps[at], gait.steps[at + 1], fraction) / STEPS_PER_CYCLE;
+            let heading = f32::from(gait.headings[at])
+                + f32::from(gait.headings[at + 1].wrapping_sub(gait.headings[at])) * fraction;
+            let crossing = self.first_crossing[instance] as usize + lane.walker();
+            let pace = gait.cycle_paces[self.tables.identities.cycle(crossing) as usize];
+            let rotate = |v: Vec2| Vec2::from_angle(turn).rotate(v);
+            Some(Walking {
+                place: rotate(place),
+                velocity: rotate(velocity),
+                heading: heading / PER_RADIAN - turn,
+                phase: (gait.crossing_phases[crossing] + steps * pace).rem_euclid(1.0),
+            })
+        })
+    }
+}
+
+fn mixed(a: i16, b: i16, share: f32) -> f32 {
+    f32::from(a) + (f32::from(b) - f32::from(a)) * share
+}

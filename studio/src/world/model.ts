@@ -1,0 +1,78 @@
+/** A baked world of crowd patches, as its file holds it. See docs/formats/world.md. */
+
+import type { Joint } from "../crowd/model";
+
+export const UNITS_PER_METRE = 1024;
+
+/** Walking poses by speed and phase, and everybody's steps. */
+export interface Gait {
+  joints: Joint[];
+  phases: number;
+  speeds: Float32Array;
+  strides: Float32Array;
+  /** x, y, z, w of every joint of every pose of every cycle. */
+  rotations: Float32Array;
+  hips: Float32Array;
+  steps: Int16Array;
+  headings: Int16Array;
+  crossingPhases: Float32Array;
+  paces: Float32Array;
+  /** First number in steps of every walker of every kind. */
+  tracks: Uint32Array;
+}
+
+export interface Thing {
+  name: string;
+  /** x, z pairs: the corners of a polygon, or the middle of a disc. */
+  points: Float32Array;
+  /** 0 for polygons. */
+  radius: number;
+}
+
+export interface Stayer {
+  name: string;
+  x: number;
+  z: number;
+  heading: number;
+}
+
+export interface Kind {
+  template: number;
+  /** x, z pairs. */
+  outline: Float32Array;
+  things: Thing[];
+  stayers: Stayer[];
+  /** Index of its first walker among those of all kinds. */
+  firstWalker: number;
+  walkers: number;
+}
+
+export interface Place {
+  kind: number;
+  x: number;
+  z: number;
+  turn: number;
+  phase: number;
+  /** Index of its first crossing. */
+  firstCrossing: number;
+}
+
+export interface World {
+  name: string;
+  period: number;
+  slots: number;
+  pageSlots: number;
+  unit: number;
+  templates: { name: string; ground: string }[];
+  /** Size of what repeats, metres; null if the world ends. */
+  repeat: [number, number] | null;
+  kinds: Kind[];
+  places: Place[];
+  rows: Int16Array;
+  lanes: Uint32Array;
+  laneEnds: Uint32Array;
+  /** First and last slot of every walker of every kind. */
+  stays: Int32Array;
+  identity: { cycle: Uint32Array; laps: Int32Array; copies: Int32Array; people: Uint32Array; around: Int32Array };
+  gait: Gait | null;
+}
