@@ -176,7 +176,7 @@ def test_boxes_are_where_the_hands_are(small: cq.Outcome) -> None:
     for prop in crowd.props:
         begin, end = prop.span
         assert prop.positions.shape == (end - begin + 1, 3) and prop.headings.shape == (end - begin + 1,)
-        assert prop.size.shape == (3,) and prop.name == "box"
+        assert prop.size.shape == (3,) and prop.name in ("box", "crate")
         for person, first, last in prop.holds:
             for frame in (first, (first + last) // 2, last):
                 wrists = crowd.positions(person, frame)[hands]

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::geom::Ground;
-use crate::motion::take::TakeFile;
+use crate::motion::take::{TakeFile, TakePatch};
 use crate::motion::testing::{standing, walking};
 use crate::motion::{FPS, mirror, retarget};
 use crate::samples;
@@ -124,7 +124,9 @@ fn every_meeting_of_the_samples_has_an_event_and_nobody_alone_has_one() {
     for seed in [1, 2] {
         let (samples, mut meetings) = (takes(seed), 0);
         for (sample, found) in samples.iter().zip(found(&samples)) {
-            for patch in sample.file.patches.iter().filter(|p| p.roles.len() > 1) {
+            // Rows that bow to each other are too far apart to meet by themselves.
+            let meets = |p: &&TakePatch| p.roles.len() > 1 && !p.labels.iter().any(|l| l == "staged");
+            for patch in sample.file.patches.iter().filter(meets) {
                 let [begin, end] = patch.core.unwrap();
                 let inside = |e: &&Event| e.begin as f32 / FPS <= end && begin <= e.end as f32 / FPS;
                 assert!(found.events.iter().any(|e| inside(&e)), "{}: {:?}", patch.name, found.why_nothing());

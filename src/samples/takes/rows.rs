@@ -7,7 +7,7 @@ use glam::Vec2;
 use super::meet::{Coming, arrive};
 use crate::geom::Ground;
 use crate::samples::acting::Sight;
-use crate::samples::actor::Actor;
+use crate::samples::actor::{Actor, secs};
 use crate::samples::posture::Channel::*;
 use crate::samples::scene::Scene;
 
@@ -28,7 +28,8 @@ pub(super) fn scenes() -> Vec<Scene> {
     actors.iter_mut().enumerate().for_each(|(i, a)| bow(a, i));
     let roles: Vec<(usize, i32, i32)> = (0..2 * ROW).map(|i| (i, entries[i], actors[i].now)).collect();
     let mut scene = Scene::new("bow-rows", actors);
-    scene.patch("bow-rows", &["friendly", "staged"], &roles, None);
+    let core = [0.2, 2.1].map(|after| secs(entries[0]) + after);
+    scene.patch("bow-rows", &["friendly", "staged"], &roles, Some(core));
     vec![scene]
 }
 
