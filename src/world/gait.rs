@@ -7,7 +7,7 @@ use glam::{Quat, Vec2, Vec3};
 use crate::motion::gait::{GaitOptions, Phase, moments};
 use crate::motion::plants::trajectory;
 use crate::motion::{FPS, JOINT_COUNT, Motion, joint, pose};
-use crate::patch::{Fragment, PatchSet};
+use crate::patch::{Fragment, PatchKind, PatchSet};
 use crate::stage::World;
 use crate::stage::world::{Gait, GaitTable, PER_RADIAN, STEPS_PER_CYCLE, mix};
 use crate::{Error, Result};
@@ -37,7 +37,9 @@ struct Cycle<'a> {
 /// # Errors
 /// If nobody walks straight on, or stands, in it.
 pub fn gait_table(set: &PatchSet) -> Result<GaitTable> {
-    let alone = set.kinds.iter().filter(|k| k.people() == 1 && k.props.is_empty());
+    // Who leaps over something ends as they begin, but does not walk.
+    let walks = |k: &&PatchKind| !k.labels.iter().any(|label| label == "jump");
+    let alone = set.kinds.iter().filter(|k| k.people() == 1 && k.props.is_empty()).filter(walks);
     let motions: Vec<&Fragment> = alone.map(|k| &k.fragments[0]).collect();
     let mut best: BTreeMap<i32, Cycle> = BTreeMap::new();
     for cycle in motions.iter().flat_map(|fragment| cycles(fragment)) {
