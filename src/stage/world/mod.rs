@@ -7,7 +7,7 @@
 //! A *page* is a run of slots; within it, every kind's walkers are *lanes* in an order that makes those present in any
 //! slot neighbours: who leaves during the page first (the earliest first), then who stays, then who comes in. Rows of
 //! control points follow each other, so that one slot of all kinds is four contiguous rows, and sampling is four loads,
-//! a weighted sum and the instance's transform for eight lanes at a time ([`Rows`](rows)). Kinds may be shared by any number of
+//! a weighted sum and the instance's transform for eight lanes at a time (`rows.rs`). Kinds may be shared by any number of
 //! instances, or be used once.
 //!
 //! | file | what |
