@@ -188,7 +188,7 @@ fn a_box_that_slips_out_of_the_hands() {
 
 #[test]
 fn a_box_that_jumps() {
-    fails(|c| c.props[0].places[carried()].middle.x += 0.3, &["moves faster", "palm off"]);
+    fails(|c| c.props[0].places[carried()].middle.x += 0.5, &["moves faster", "palm off"]);
 }
 
 #[test]
