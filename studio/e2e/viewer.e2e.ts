@@ -180,7 +180,7 @@ describe("a click", () => {
 
 describe("broken files", () => {
   const cases: [string, Uint8Array | null, RegExp][] = [
-    ["missing", null, /expected a crowd or a patch set, the server says 404/],
+    ["missing", null, /expected a crowd, a patch set or a world, the server says 404/],
     ["cut", bytes.slice(0, bytes.length >> 1), /byte 12: expected \d+ bytes in all, found \d+: the file is cut/],
     [
       "other",
