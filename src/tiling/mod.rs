@@ -23,6 +23,7 @@ mod mend;
 mod occupancy;
 mod outcome;
 mod paper;
+mod passage;
 mod piece;
 mod plan;
 mod prefer;
@@ -31,6 +32,7 @@ mod scene;
 mod seed;
 mod sketch;
 mod tracks;
+mod tryout;
 mod view;
 
 #[cfg(test)]
