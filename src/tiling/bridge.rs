@@ -12,7 +12,6 @@ use rustc_hash::FxHashSet;
 use super::domain::Spot;
 use super::library::{Closing, Library, Move, Span};
 use super::piece::{Company, Piece, Rigid};
-use super::prefer::Stay;
 use super::view::View;
 use crate::geom::{Ground, wrap_angle};
 use crate::motion::{FPS, MotionPath};
@@ -253,8 +252,7 @@ impl Bridge {
             let place = from.at.position + turn.apply(step.to.position);
             let at = Ground::new(place, from.at.heading + step.to.heading);
             let at = Port { at, tick: from.tick + direction * step.ticks, group: step.group };
-            let inside = at.tick < 0
-                || at.tick > view.domain.horizon
+            let inside = view.domain.is_unseen(at.tick)
                 || view.domain.holds(Spot::ground(at.tick), at.at.position, WALL_ROOM);
             if !inside || self.seen.contains(&key(&at)) {
                 continue;
@@ -399,7 +397,7 @@ fn leap_weight(view: View, step: &Move, from: &Port, goal: Goal) -> f32 {
 
 /// Equation 7: what a step costs more for leading where, when or which way nobody wants to be.
 fn price(view: View, step: &Move, to: &Port) -> f32 {
-    view.library.preference.price(view.library.roles[step.role as usize].kind, Stay::new(to.at, to.tick))
+    view.library.preference.price(view.library.roles[step.role as usize].kind, view.domain.stay(to.at, to.tick))
 }
 
 /// Cost of the time over which a step leaves a box lying about.

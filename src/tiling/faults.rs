@@ -35,26 +35,34 @@ pub(super) struct Fault {
 /// neighbours), in parallel.
 pub(super) fn faults(chains: Chains, played: &Performance, is_new: &[bool]) -> Vec<Fault> {
     let at_tick = |tick| {
-        let places = Places::at(tick, played.bodies.iter());
+        let places = Places::at(tick, played.bodies.iter(), chains.domain.torus);
         let mut pairs = in_the_way(chains, played, &places, tick);
         pairs.retain(|&(a, b)| is_new[a] || is_new[b]);
         pairs.extend(touching(chains, &played.bodies, &places, is_new, tick));
         pairs
     };
-    let per_tick: Vec<Vec<(TrackId, TrackId)>> = (0..chains.domain.horizon).into_par_iter().map(at_tick).collect();
+    let per_tick: Vec<Vec<(TrackId, TrackId)>> = chains.domain.frames().into_par_iter().map(at_tick).collect();
+    let first = chains.domain.frames().start;
     let mut open: BTreeSet<(TrackId, TrackId)> = BTreeSet::new();
     let mut faults = Vec::new();
     for (tick, pairs) in per_tick.into_iter().enumerate() {
         let now: BTreeSet<_> = pairs.into_iter().collect();
-        faults.extend(now.difference(&open).map(|&(a, b)| Fault { a, b, tick: tick as i32 }));
+        faults.extend(now.difference(&open).map(|&(a, b)| Fault { a, b, tick: first + tick as i32 }));
         open = now;
     }
     let alone = |(t, body): (TrackId, &Body)| {
-        let frame = first_unclean(body, chains.library, chains.domain, 0..body.root.len())?;
+        let frame = first_unclean(body, chains.library, chains.domain, tested(chains.domain, body))?;
         Some(Fault { a: t, b: t, tick: body.begin as i32 + frame as i32 })
     };
     faults.par_extend(played.bodies.par_iter().enumerate().filter(|(t, _)| is_new[*t]).filter_map(alone));
     faults
+}
+
+/// The frames of a body that are looked at, the one that is the first again included.
+fn tested(domain: &Domain, body: &Body) -> Range<usize> {
+    let frames = domain.frames();
+    let index = |tick: i32| (tick - body.begin as i32).max(0) as usize;
+    index(frames.start)..(index(frames.end) + 1).min(body.root.len())
 }
 
 /// The first of some frames on which a leg cannot do what it should, a joint turns or the hips move faster than in the
@@ -105,7 +113,7 @@ fn captured_depth(chains: Chains, (a, b): (TrackId, TrackId), tick: i32) -> f32 
     if a.instance != b.instance {
         return 0.0;
     }
-    let clocks = [a, b].map(|piece| clock(chains, piece, tick));
+    let clocks = [a, b].map(|piece| clock(chains, piece, chains.domain.cycle.fold(tick, piece.begin)));
     let (first, last) = (clocks[0].min(clocks[1]).floor() as u32, clocks[0].max(clocks[1]).ceil() as u32);
     (first..=last).map(|c| captured(chains, a, c).depth_into(&captured(chains, b, c))).fold(0.0, f32::max)
 }

@@ -10,12 +10,11 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use super::bridge::{Goal, Port, Taste, has_easy_closings};
-use super::domain::Spot;
+use super::domain::{Domain, Spot};
 use super::draft::Draft;
 use super::library::Library;
 use super::occupancy::PieceId;
 use super::piece::{Company, Rigid};
-use super::prefer::Stay;
 use crate::geom::Ground;
 
 /// Places tried for a first patch.
@@ -32,6 +31,8 @@ const ENOUGH: usize = 3;
 const EASY: usize = 2;
 /// Room that the ends of a patch must have to walls, metres.
 const WALL_ROOM: f32 = 0.4;
+/// Where time comes round, so many ticks are left for the way back to the first patch.
+const HOMEWARD: i32 = 90;
 /// Ticks of the first patch that are seen at least.
 const SEEN: i32 = 15;
 
@@ -151,6 +152,11 @@ impl Life {
         let company = Company { from: instance, to: instance };
         Self { pieces: vec![id], begin: part.entry, end: part.exit, company }
     }
+
+    /// The tick up to which it may go on together: the end of time, or when it must be on the way to where it began.
+    fn latest(&self, domain: &Domain) -> i32 {
+        if domain.cycle.loops() { self.begin.tick + domain.cycle.ticks() - HOMEWARD } else { domain.horizon }
+    }
 }
 
 /// Adds people who meet as wished, each present over the whole time.
@@ -162,15 +168,15 @@ pub(super) fn gather(
     rng: &mut ChaCha8Rng,
 ) -> Option<()> {
     let first = (0..PLACES).find_map(|_| place(draft, wish, rng))?;
-    let horizon = draft.base.domain.horizon;
-    let mut together = time_together(&first, horizon);
+    let domain = draft.base.domain;
+    let mut together = time_together(&first, domain);
     let ids = draft.add_patch(first.iter().map(|p| (p.role, p.entry)))?;
     let here = draft.piece(ids[0]).instance;
     let mut lives: Vec<Life> = first.iter().zip(ids).map(|(part, id)| Life::of(part, id, here)).collect();
     let mut kind = wish.kind;
-    while together < wish.together && lives.iter().all(|l| l.end.tick < horizon - SEEN) {
+    while together < wish.together && lives.iter().all(|l| l.end.tick < l.latest(domain) - SEEN) {
         let Some((next, parts)) = go_on(draft, &mut lives, &encores.0[kind as usize], taste, rng) else { break };
-        together += time_together(&parts, horizon);
+        together += time_together(&parts, domain);
         kind = next;
     }
     if together < wish.least {
@@ -187,8 +193,8 @@ pub(super) fn gather(
 }
 
 /// Ticks of a patch within the domain's time, on average over its people.
-fn time_together(parts: &[Part], horizon: i32) -> i32 {
-    let ticks = |p: &Part| p.exit.tick.clamp(0, horizon) - p.entry.tick.clamp(0, horizon);
+fn time_together(parts: &[Part], domain: &Domain) -> i32 {
+    let ticks = |p: &Part| domain.seen(p.entry.tick, p.exit.tick).len() as i32;
     parts.iter().map(ticks).sum::<i32>() / parts.len() as i32
 }
 
@@ -199,10 +205,10 @@ fn place(draft: &Draft, wish: Wish, rng: &mut ChaCha8Rng) -> Option<Vec<Part>> {
         Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
     let world_from_patch = Ground::new(position, rng.random_range(-PI..PI));
     let longest = library.roles_of(wish.kind).map(|r| library.roles[r as usize].ticks).max()?;
-    let earliest = SEEN - longest;
-    let latest = (domain.horizon - SEEN - wish.together).max(earliest + 1);
-    let clock = rng.random_range(earliest..latest);
-    if !library.preference.is_wanted(wish.kind, Stay::new(world_from_patch, clock.max(0)), rng) {
+    let earliest = if domain.cycle.loops() { 0 } else { SEEN - longest };
+    let latest = if domain.cycle.loops() { domain.horizon } else { domain.horizon - SEEN - wish.together };
+    let clock = rng.random_range(earliest..latest.max(earliest + 1));
+    if !library.preference.is_wanted(wish.kind, domain.stay(world_from_patch, clock.max(0)), rng) {
         return None;
     }
     let parts = parts(library, wish.kind, world_from_patch, clock);
@@ -211,8 +217,7 @@ fn place(draft: &Draft, wish: Wish, rng: &mut ChaCha8Rng) -> Option<Vec<Part>> {
 
 fn is_free(draft: &Draft, parts: &[Part]) -> bool {
     let (library, domain) = (draft.base.library, draft.base.domain);
-    let outside = |tick: i32| tick < 0 || tick > domain.horizon;
-    let room = |p: &Port| outside(p.tick) || domain.holds(Spot::ground(p.tick), p.at.position, WALL_ROOM);
+    let room = |p: &Port| domain.is_unseen(p.tick) || domain.holds(Spot::ground(p.tick), p.at.position, WALL_ROOM);
     let rigid = |p: &Part| Rigid::new(library, p.role, p.entry.at, p.entry.tick);
     let view = draft.view();
     parts.iter().all(|p| room(&p.entry) && room(&p.exit))
@@ -230,15 +235,17 @@ fn go_on(
     if encores.is_empty() {
         return None;
     }
-    let library = draft.base.library;
+    let (library, domain) = (draft.base.library, draft.base.domain);
+    let latest = lives.iter().map(|l| l.latest(domain)).min()?;
     let ends: Vec<Port> = lives.iter().map(|l| l.end).collect();
     let mut tries = 0;
     for _ in 0..STEPS {
         let encore = encores[rng.random_range(0..encores.len())];
         let parts = step(library, &ends, encore);
         let from = |k: usize| ends[player(encore, k, ends.len())];
-        let stay = Stay::new(parts[0].entry.at, parts[0].entry.tick);
-        if !library.preference.is_wanted(encore.kind, stay, rng) || !is_free(draft, &parts) {
+        let stay = domain.stay(parts[0].entry.at, parts[0].entry.tick);
+        let too_late = domain.cycle.loops() && parts.iter().any(|p| p.exit.tick > latest);
+        if too_late || !library.preference.is_wanted(encore.kind, stay, rng) || !is_free(draft, &parts) {
             continue;
         }
         let mark = draft.mark();
@@ -282,7 +289,7 @@ fn join(
 
 /// Leads somebody from the beginning of time to their first patch.
 pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
-    if life.begin.tick > 0 {
+    if life.begin.tick > 0 && !draft.base.domain.cycle.loops() {
         let company = Company { to: life.company.from, ..Company::NONE };
         let way = lead(draft, life.begin, Goal::Since(0), company, taste, rng)?;
         life.pieces.splice(..0, way);
@@ -290,10 +297,15 @@ pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut C
     Some(())
 }
 
-/// Leads somebody from their last patch to the end of time.
+/// Leads somebody from their last patch to the end of time, or round to their first one.
 pub(super) fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let horizon = draft.base.domain.horizon;
-    if life.end.tick < horizon {
+    if draft.base.domain.cycle.loops() {
+        let company = Company { from: life.company.to, to: life.company.from };
+        let mut tries = [Company::NONE, company].into_iter();
+        let way = tries.find_map(|company| draft.come_round(life.end, life.begin, company, taste, rng))?;
+        life.pieces.extend(way);
+    } else if life.end.tick < horizon {
         let company = Company { from: life.company.to, ..Company::NONE };
         life.pieces.extend(lead(draft, life.end, Goal::Until(horizon), company, taste, rng)?);
     }

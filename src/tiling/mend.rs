@@ -56,6 +56,7 @@ pub(super) fn dissolve(draft: &mut Draft, fault: Fault, taste: Taste, rng: &mut 
 fn near(tracks: &Tracks, track: TrackId, tick: i32, reach: usize, wanted: impl Fn(usize) -> bool) -> Option<usize> {
     let pieces = &tracks.tracks[track];
     let at = tracks.index_at(track, tick).min(pieces.len() - 1);
+    let tick = tracks.fold(track, tick);
     let distance = |i: &usize| {
         let p = tracks.piece(pieces[*i]);
         (p.begin - tick).max(tick - p.end).max(0)
@@ -92,8 +93,11 @@ fn rebridge(
 fn is_clean(draft: &Draft, window: Window) -> bool {
     let Tracks { library, domain, .. } = draft.base;
     let pieces = draft.track(window.track).iter().map(|&id| draft.piece(id));
-    let body = refine(&segments(&uses(library, domain.horizon, pieces)), domain.horizon as u32 - 1);
+    let body = refine(&segments(&uses(library, domain, pieces)), domain.last_frame());
     let ticks = draft.base.span(window);
+    // Where time comes round, in the second lap or right before it.
+    let shift = domain.cycle.fold(ticks.start, domain.frames().start) - ticks.start;
+    let ticks = ticks.start + shift..ticks.end + shift;
     let frame = |tick: i32| (tick - body.begin as i32).clamp(0, body.root.len() as i32) as usize;
     first_unclean(&body, library, domain, frame(ticks.start - BLEND_TICKS)..frame(ticks.end + BLEND_TICKS)).is_none()
 }
