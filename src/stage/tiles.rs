@@ -1,11 +1,12 @@
 //! Crowds whose ground repeats, unrolled: a block of tiles side by side.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec2;
 
-use super::{Character, Crowd, Instance};
-use crate::geom::{Obstacle, Polygon};
+use super::{Crowd, Instance};
+use crate::geom::{Obstacle, Periodic, Polygon};
+use crate::motion::FPS;
 use crate::patch::{Contact, PatchKind, Touch};
 
 /// Nobody reaches further from the hips than this, metres.
@@ -19,7 +20,7 @@ fn tile(laps: Vec2) -> Tile {
 }
 
 fn add(a: Tile, b: Tile) -> Tile {
-    (a.0 + b.0, a.1 + b.1)
+    (a.0.wrapping_add(b.0), a.1.wrapping_add(b.1))
 }
 
 /// An image of an instance and who plays it: (character, fragment) of the block.
@@ -46,15 +47,16 @@ impl Crowd {
         if !self.domain.periodic.in_space() {
             return self.without_boxes();
         }
-        let (low, high) = self.domain.region.bounds();
-        let block = (low, low + self.domain.torus().period() * Vec2::new(x as f32, z as f32));
-        let block = (block.0, Vec2::new(block.1.x.max(high.x), block.1.y.max(high.y)));
+        let repeats = self.domain.periodic;
+        let (columns, rows) = (if repeats.x { x } else { 1 }, if repeats.z { z } else { 1 });
+        let block: BTreeSet<Tile> =
+            (0..rows as i32).flat_map(|z| (0..columns as i32).map(move |x| (x, z))).collect();
         let mut out = self.without_people();
         let mut images: BTreeMap<(u32, Tile), Image> = BTreeMap::new();
         let sites = self.sites();
         for c in &self.characters {
             let own: Vec<Tile> = c.fragments.iter().map(|f| self.beside(f, &sites)).collect();
-            for image in self.images_of(c, block) {
+            for image in self.images(c.root.iter().map(|p| Vec2::new(p.x, p.z)), &block) {
                 for (k, f) in c.fragments.iter().enumerate() {
                     let entry = images.entry((f.instance, add(own[k], image)));
                     let new = || Image { instance: f.instance, players: vec![] };
@@ -66,7 +68,7 @@ impl Crowd {
             }
         }
         self.cast(&mut out, images.into_values());
-        self.open(&mut out, block);
+        self.open(&mut out, &block);
         out
     }
 
@@ -76,24 +78,18 @@ impl Crowd {
         tile(self.domain.torus().laps(self.site_of(f).place - first))
     }
 
-    /// The tiles an image in which of a person is ever in a block.
-    fn images_of(&self, c: &Character, (low, high): (Vec2, Vec2)) -> Vec<Tile> {
-        let ends = c.root.iter().map(|p| Vec2::new(p.x, p.z));
-        let (from, to) = ends.fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
-        if c.root.is_empty() {
-            return vec![];
-        }
-        let period = self.domain.torus().period();
-        let span = |low: f32, high: f32, from: f32, to: f32, period: f32| match period > 0.0 {
-            true => ((low - to) / period).ceil() as i32..=((high - from) / period).floor() as i32,
-            false => 0..=0,
-        };
-        let (columns, rows) = (span(low.x, high.x, from.x, to.x, period.x), span(low.y, high.y, from.y, to.y, period.y));
-        let inside = |image: &Tile| {
-            let by = period * Vec2::new(image.0 as f32, image.1 as f32);
-            c.root.iter().map(|p| Vec2::new(p.x, p.z) + by).any(|p| p.cmpge(low).all() && p.cmple(high).all())
-        };
-        rows.flat_map(|z| columns.clone().map(move |x| (x, z))).filter(inside).collect()
+    /// The tile in which a place is; tile 0 along a direction that does not repeat.
+    fn tile_of(&self, place: Vec2) -> Tile {
+        let (torus, low) = (self.domain.torus(), self.domain.region.bounds().0);
+        let repeats = torus.period().cmpgt(Vec2::ZERO);
+        tile(Vec2::select(repeats, (place - low) / torus.period(), Vec2::ZERO).floor())
+    }
+
+    /// By how many tiles some places are shifted to be in one of the tiles of a block at some time.
+    fn images(&self, places: impl Iterator<Item = Vec2>, block: &BTreeSet<Tile>) -> BTreeSet<Tile> {
+        let own: BTreeSet<Tile> = places.map(|p| self.tile_of(p)).collect();
+        let shift = |a: Tile, b: Tile| (a.0.wrapping_sub(b.0), a.1.wrapping_sub(b.1));
+        own.iter().flat_map(|&o| block.iter().map(move |&b| shift(b, o))).collect()
     }
 
     /// Numbers the images of instances; those without all their people become instances of smaller kinds.
@@ -128,22 +124,36 @@ impl Crowd {
         }
     }
 
-    /// Opens the sides that repeat so far that nobody meets them, and puts the obstacles of all tiles there.
-    fn open(&self, out: &mut Self, block: (Vec2, Vec2)) {
-        let torus = self.domain.torus();
-        let repeats = torus.period().cmpgt(Vec2::ZERO);
-        let places = out.characters.iter().flat_map(|c| &c.root).map(|p| Vec2::new(p.x, p.z));
-        let (from, to) = places.fold(block, |(a, b), p| (a.min(p - REACH), b.max(p + REACH)));
-        let (low, high) = (Vec2::select(repeats, from, block.0), Vec2::select(repeats, to, block.1));
-        out.domain.region = Polygon::rectangle(low, high);
-        out.domain.periodic = crate::geom::Periodic { x: false, z: false, ..self.domain.periodic };
-        let first = torus.laps(low - block.0).floor() - Vec2::splat(1.0);
-        let last = torus.laps(high - block.0).ceil() + Vec2::splat(1.0);
-        let ((x0, z0), (x1, z1)) = (tile(first), tile(last));
-        let span = |repeats: bool, a: i32, b: i32| if repeats { a..=b } else { 0..=0 };
-        let tiles = span(repeats.y, z0, z1).flat_map(|z| span(repeats.x, x0, x1).map(move |x| Vec2::new(x as f32, z as f32)));
-        let images = |by: Vec2| self.domain.obstacles.iter().map(move |o| moved(o, by));
-        out.domain.obstacles = tiles.flat_map(|t| images(t * torus.period())).collect();
+    /// Opens the sides that repeat so far that nobody meets them, and puts obstacles wherever somebody is.
+    fn open(&self, out: &mut Self, block: &BTreeSet<Tile>) {
+        let (low, high) = self.domain.region.bounds();
+        let period = self.domain.torus().period();
+        let repeats = period.cmpgt(Vec2::ZERO);
+        let corner = |t: &Tile| low + period * Vec2::new(t.0 as f32, t.1 as f32);
+        let ends = block.iter().fold((low, high), |(a, b), t| (a.min(corner(t)), b.max(corner(t) + (high - low))));
+        let places = || out.characters.iter().flat_map(|c| &c.root).map(|p| Vec2::new(p.x, p.z));
+        let (from, to) = places().fold(ends, |(a, b), p| (a.min(p - REACH), b.max(p + REACH)));
+        let region = Polygon::rectangle(Vec2::select(repeats, from, low), Vec2::select(repeats, to, high));
+        let beside = |(x, z): Tile| {
+            let all = (-1..2).flat_map(move |i| (-1..2).map(move |k| (x.wrapping_add(i), z.wrapping_add(k))));
+            all.filter(|&t| (repeats.x || t.0 == 0) && (repeats.y || t.1 == 0))
+        };
+        let walked: BTreeSet<Tile> = places().map(|p| self.tile_of(p)).chain(block.iter().copied()).collect();
+        let walked: BTreeSet<Tile> = walked.into_iter().flat_map(beside).collect();
+        let images = |o: &Obstacle| -> Vec<Obstacle> {
+            let shifts = self.images(self.stations(o).into_iter(), &walked);
+            shifts.into_iter().map(|t| moved(o, period * Vec2::new(t.0 as f32, t.1 as f32))).collect()
+        };
+        out.domain.obstacles = self.domain.obstacles.iter().flat_map(images).collect();
+        out.domain.region = region;
+        out.domain.periodic = Periodic { x: false, z: false, ..self.domain.periodic };
+    }
+
+    /// Where an obstacle is, second by second.
+    fn stations(&self, obstacle: &Obstacle) -> Vec<Vec2> {
+        let (low, high) = obstacle.outline.bounds();
+        let secs = if obstacle.path.is_empty() { 0 } else { self.domain.last_frame / FPS as u32 };
+        (0..=secs).map(|s| obstacle.place(s as f32).apply((low + high) * 0.5)).collect()
     }
 }
 
