@@ -76,7 +76,8 @@ fn borders_are_crossed_and_laps_go_on_in_the_midst_of_things() {
 fn people_of_one_patch_may_be_in_different_tiles() {
     let is_apart = |crowd: &Crowd| {
         let parts = || crowd.characters.iter().flat_map(|c| &c.fragments);
-        let far = |f: &FragmentUse| parts().any(|g| g.instance == f.instance && g.points[0].distance(f.points[0]) > 4.5);
+        let far =
+            |f: &FragmentUse| parts().any(|g| g.instance == f.instance && g.points[0].distance(f.points[0]) > 4.5);
         parts().any(far)
     };
     let apart: Vec<Crowd> = (1..=12).map(|seed| tiled(&scene("xz"), seed)).filter(is_apart).collect();

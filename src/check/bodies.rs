@@ -95,13 +95,7 @@ pub(super) fn bodies_at(crowd: &Crowd, frame: u32) -> Vec<(usize, Body)> {
     present.map(body).collect()
 }
 
-pub(super) fn pair_depth(
-    chains: &[&[Part]],
-    frame: u32,
-    (a, b): (usize, usize),
-    depth: f32,
-    depths: &mut Depths,
-) {
+pub(super) fn pair_depth(chains: &[&[Part]], frame: u32, (a, b): (usize, usize), depth: f32, depths: &mut Depths) {
     match shared_patch(chains, frame, a, b) {
         None => depths.apart.offer(depth as f64, || format!("characters {a} and {b}, frame {frame}")),
         Some((role_a, role_b)) => {

@@ -58,7 +58,9 @@ fn unbroken(crowd: &Crowd) -> Faults {
     for (c, character) in crowd.characters.iter().enumerate().filter(|_| domain.periodic.t) {
         let (frames, expected) = (character.frames(), domain.last_frame as usize + 1);
         if character.begin != 0 || frames != expected {
-            faults.add(|| format!("character {c}: expected {expected} frames from 0 on, found {frames} from {}", character.begin));
+            faults.add(|| {
+                format!("character {c}: expected {expected} frames from 0 on, found {frames} from {}", character.begin)
+            });
         }
     }
     faults
@@ -105,7 +107,8 @@ fn goes_on(crowd: &Crowd, character: &Character, torus: Torus, limits: &Limits) 
     let near = |a: glam::Vec2, b: glam::Vec2| torus.nearest(a - b).length() as f64 <= limits.stitch_position;
     let ((kind, entered), (last_kind, left)) = (source(first), source(last));
     if last.end > lap {
-        let same = (kind, first.role, first.begin + lap, first.end + lap) == (last_kind, last.role, last.begin, last.end);
+        let same =
+            (kind, first.role, first.begin + lap, first.end + lap) == (last_kind, last.role, last.begin, last.end);
         return same && first.points.iter().zip(&last.points).all(|(a, b)| near(*a, *b));
     }
     let port = near(last.points[last.points.len() - 1], first.points[0]) && left.exit_group == entered.entry_group;

@@ -131,13 +131,7 @@ pub fn refine_all(people: &[Vec<Segment>], last_frame: u32, torus: Torus) -> Per
 
 /// The same of some of them only; `who` are their numbers, ascending. Who shares a patch with one of them must be one of
 /// them.
-pub fn refine_some(
-    people: &[Vec<Segment>],
-    who: &[usize],
-    last_frame: u32,
-    torus: Torus,
-    out: &mut Performance,
-) {
+pub fn refine_some(people: &[Vec<Segment>], who: &[usize], last_frame: u32, torus: Torus, out: &mut Performance) {
     let people: Vec<Vec<Segment>> = who.iter().map(|&person| people[person].clone()).collect();
     let mut bodies: Vec<Body> = people.par_iter().map(|segments| walk(segments, last_frame)).collect();
     touch::restore(&people, &mut bodies, torus);

@@ -49,8 +49,7 @@ impl Crowd {
         }
         let repeats = self.domain.periodic;
         let (columns, rows) = (if repeats.x { x } else { 1 }, if repeats.z { z } else { 1 });
-        let block: BTreeSet<Tile> =
-            (0..rows as i32).flat_map(|z| (0..columns as i32).map(move |x| (x, z))).collect();
+        let block: BTreeSet<Tile> = (0..rows as i32).flat_map(|z| (0..columns as i32).map(move |x| (x, z))).collect();
         let mut out = self.without_people();
         let mut images: BTreeMap<(u32, Tile), Image> = BTreeMap::new();
         let sites = self.sites();

@@ -61,6 +61,8 @@ const SLACK: f32 = 0.5;
 const EASY_REACH: f32 = 0.45;
 const EASY_TURN: f32 = 0.6;
 const MAX_TURN: f32 = std::f32::consts::FRAC_PI_3;
+/// Ways to a port that take longer than this are long, seconds.
+const LONG_WAY: f32 = 4.0;
 /// A state this close to a wall leads nowhere.
 const WALL_ROOM: f32 = 0.3;
 /// Steps sideways and back cost this much more than walking ahead: people turn to where they go.
@@ -252,8 +254,8 @@ impl Bridge {
             let place = from.at.position + turn.apply(step.to.position);
             let at = Ground::new(place, from.at.heading + step.to.heading);
             let at = Port { at, tick: from.tick + direction * step.ticks, group: step.group };
-            let inside = view.domain.is_unseen(at.tick)
-                || view.domain.holds(Spot::ground(at.tick), at.at.position, WALL_ROOM);
+            let inside =
+                view.domain.is_unseen(at.tick) || view.domain.holds(Spot::ground(at.tick), at.at.position, WALL_ROOM);
             if !inside || self.seen.contains(&key(&at)) {
                 continue;
             }
@@ -419,7 +421,9 @@ fn cost_left(at: &Port, goal: Goal, price: f32) -> Option<f32> {
             let reachable = left > 0.0 && distance <= TOP_SPEED * left + SLACK;
             let turn = wrap_angle(to.at.heading - at.at.heading).abs() - MAX_TURN;
             let late = (distance - EASY_SPEED * left).max(0.0) + TURN_WEIGHT * (turn - left).max(0.0);
-            reachable.then_some(TIME_WEIGHT * left + LATE_WEIGHT * late)
+            // A short way ends at the goal's price, a long one goes on at that of the present place.
+            let price = if left > LONG_WAY { price } else { 1.0 };
+            reachable.then_some(price * TIME_WEIGHT * left + LATE_WEIGHT * late)
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use glam::Vec2;
 
-use super::{Scene, repeat};
 use super::prefer::Stay;
+use super::{Scene, repeat};
 use crate::geom::{Cycle, Ground, Obstacle, Polygon, Torus, Turn};
 use crate::motion::FPS;
 use crate::{Error, Result};

@@ -5,8 +5,8 @@ use glam::Vec2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::domain::Domain;
 use super::bridge::{Bridge, Goal, NO_INSTANCE, Port, Taste};
+use super::domain::Domain;
 use super::occupancy::PieceId;
 use super::piece::{Company, Piece, Shift};
 use super::sketch::{Mark, Sketch};
@@ -101,13 +101,7 @@ impl<'a> Draft<'a> {
     }
 
     /// Searches a chain that ends the life of somebody who walks alone: at the end of time, or where it began.
-    pub fn to_the_end(
-        &mut self,
-        begin: Port,
-        from: Port,
-        taste: Taste,
-        rng: &mut ChaCha8Rng,
-    ) -> Option<Vec<PieceId>> {
+    pub fn to_the_end(&mut self, begin: Port, from: Port, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Vec<PieceId>> {
         match self.base.domain.cycle.loops() {
             true => self.come_round(from, begin, Company::NONE, taste, rng),
             false => self.search(from, Goal::Until(self.base.domain.horizon), Company::NONE, taste, rng),

@@ -122,7 +122,11 @@ fn meeting_point(
     // Some patches are met half-way through at the first frame.
     let tick = if loops {
         tracks.fold(track, tick)
-    } else if tick < EARLY_TICKS { tick - rng.random_range(0..lead.ticks) } else { tick };
+    } else if tick < EARLY_TICKS {
+        tick - rng.random_range(0..lead.ticks)
+    } else {
+        tick
+    };
     if (tick > 0 || loops) && rng.random_range(0..2) == 0 {
         let joint = tracks.index_at(track, tick);
         let port = tracks.port(track, joint);

@@ -35,14 +35,18 @@ pub(super) fn possible(scene: &Scene) -> Result<()> {
         let (low, high) = scene.region.bounds();
         for (axis, wide, does) in [("x", high.x - low.x, repeats.x), ("z", high.y - low.y, repeats.z)] {
             if does && wide < SHORTEST_PERIOD {
-                let problem = format!("expected at least {SHORTEST_PERIOD} m along {axis}, because it repeats, found {wide} m");
+                let problem =
+                    format!("expected at least {SHORTEST_PERIOD} m along {axis}, because it repeats, found {wide} m");
                 return bad("region", problem);
             }
         }
     }
     if repeats.t && scene.duration_secs < SHORTEST_LAP {
         let found = scene.duration_secs;
-        return bad("duration_secs", format!("expected at least {SHORTEST_LAP} s, because it repeats, found {found} s"));
+        return bad(
+            "duration_secs",
+            format!("expected at least {SHORTEST_LAP} s, because it repeats, found {found} s"),
+        );
     }
     if repeats.t && !(scene.sources.is_empty() && scene.sinks.is_empty()) {
         return bad("periodic", "expected no sources and sinks where \"t\" repeats: everybody's life is a loop".into());
@@ -80,7 +84,9 @@ fn wayward(scene: &Scene, obstacle: &Obstacle) -> Option<String> {
     let away = torus.nearest(ends[1].position - ends[0].position).length();
     let turned = crate::geom::wrap_angle(ends[1].heading - ends[0].heading).abs();
     if scene.periodic.t && (away > BACK || turned > BACK) {
-        return Some(format!("expected it back at the end, because time repeats, found it {away} m and {turned} rad off"));
+        return Some(format!(
+            "expected it back at the end, because time repeats, found it {away} m and {turned} rad off"
+        ));
     }
     None
 }
@@ -139,7 +145,8 @@ mod tests {
     fn moving_obstacles_come_back_or_go_on_into_the_next_tile() {
         let at = |secs: f32, x: f32| Waypoint { secs, position: Vec2::new(x, 5.0), heading: 0.0 };
         let outline = Polygon::rectangle(Vec2::splat(-0.5), Vec2::splat(0.5));
-        let cart = |to: f32| Obstacle { outline: outline.clone(), height: None, path: vec![at(0.0, 2.0), at(20.0, to)] };
+        let cart =
+            |to: f32| Obstacle { outline: outline.clone(), height: None, path: vec![at(0.0, 2.0), at(20.0, to)] };
         let with = |periodic: Periodic, to: f32| Scene { obstacles: vec![cart(to)], ..scene(periodic) };
         let t = Periodic { t: true, ..Periodic::default() };
         assert!(possible(&with(t, 2.0)).is_ok());
