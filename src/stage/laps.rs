@@ -49,7 +49,7 @@ impl Crowd {
         }
         let mut out = self.without_people();
         out.domain.periodic.t = false;
-        out.domain.last_frame = laps * self.domain.last_frame;
+        out.domain.last_frame = laps.saturating_mul(self.domain.last_frame);
         out.domain.obstacles = self.domain.obstacles.iter().map(|o| self.rounds(o, laps)).collect();
         let count = self.instances.len() as u32;
         let twins = self.twins();

@@ -100,7 +100,7 @@ impl Crowd {
         let mut smaller: BTreeMap<(u32, Vec<u32>), u32> = BTreeMap::new();
         for Image { instance, players } in images {
             let (mut kind, number) = (self.instances[instance as usize].kind, out.instances.len() as u32);
-            let role = |&(c, k): &(usize, usize)| self_role(out, c, k);
+            let role = |&(c, k): &(usize, usize)| role_of(out, c, k);
             let mut roles: Vec<u32> = players.iter().map(role).collect();
             roles.sort_unstable();
             roles.dedup();
@@ -156,7 +156,7 @@ impl Crowd {
     }
 }
 
-fn self_role(out: &Crowd, c: usize, k: usize) -> u32 {
+fn role_of(out: &Crowd, c: usize, k: usize) -> u32 {
     out.characters[c].fragments[k].role
 }
 

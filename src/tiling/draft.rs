@@ -101,7 +101,13 @@ impl<'a> Draft<'a> {
     }
 
     /// Searches a chain that ends the life of somebody who walks alone: at the end of time, or where it began.
-    pub fn to_the_end(&mut self, begin: Port, from: Port, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Vec<PieceId>> {
+    pub fn lead_to_the_end(
+        &mut self,
+        begin: Port,
+        from: Port,
+        taste: Taste,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Vec<PieceId>> {
         match self.base.domain.cycle.loops() {
             true => self.come_round(from, begin, Company::NONE, taste, rng),
             false => self.search(from, Goal::Until(self.base.domain.horizon), Company::NONE, taste, rng),

@@ -35,7 +35,7 @@ pub(super) fn hurdle(draft: &mut Draft, jumpers: &[u32], taste: Taste, rng: &mut
     };
     pieces.push(id);
     if exit.tick < horizon || draft.base.domain.cycle.loops() {
-        pieces.extend(draft.to_the_end(entry, exit, taste, rng)?);
+        pieces.extend(draft.lead_to_the_end(entry, exit, taste, rng)?);
     }
     draft.push_track(pieces);
     Some(())

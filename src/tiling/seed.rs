@@ -21,7 +21,7 @@ pub(super) fn seed_person(draft: &mut Draft, laden: bool, taste: Taste, rng: &mu
     let first = (0..PLACES).find_map(|_| first_piece(draft, laden, rng))?;
     let (entry, exit) = (draft.base.library.entry_of(&first), draft.base.library.exit_of(&first));
     let mut pieces = vec![draft.add(first)];
-    pieces.extend(draft.to_the_end(entry, exit, taste, rng)?);
+    pieces.extend(draft.lead_to_the_end(entry, exit, taste, rng)?);
     draft.push_track(pieces);
     Some(())
 }
