@@ -108,6 +108,7 @@ fn hand_over(tone: usize) -> Crowd {
         region: Polygon::rectangle(Vec2::splat(-6.0), Vec2::splat(6.0)),
         obstacles: vec![],
         last_frame: last as u32,
+        periodic: Default::default(),
     };
     let chains = chains.into_iter().chain([alone]).enumerate();
     let characters = chains.map(person).collect();

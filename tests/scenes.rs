@@ -139,3 +139,13 @@ fn keyframed_patches_are_where_they_were_placed() {
     }
     assert_eq!(crowd.instances.iter().filter(|i| crowd.set.kinds[i.kind as usize].people() == 10).count(), 3);
 }
+
+#[test]
+fn tiles_that_repeat_have_no_seam() {
+    for (name, people) in [("repeating-tile", 55), ("endless", 48), ("endless-tile", 40)] {
+        let outcome = clean(name, 1);
+        assert_eq!(outcome.status, Status::Perfect);
+        assert_eq!(outcome.crowd.characters.len(), people);
+        assert_eq!(outcome.crowd.domain.periodic, load(name).periodic);
+    }
+}

@@ -58,6 +58,8 @@ class Run:
     outcome: Outcome
     summary: check.Summary
     ok: bool
+    seams: dict[str, float]
+    """The worst of the rows of a seam in metres; none if nothing repeats."""
 
 
 def runs(scene: Scene, patches: PatchSet, seeds: int, method: str = "engine") -> list[Run]:
@@ -65,9 +67,20 @@ def runs(scene: Scene, patches: PatchSet, seeds: int, method: str = "engine") ->
     found = []
     for seed in range(1, seeds + 1):
         outcome = tile(scene, patches, seed=seed, method=method)
-        ok = outcome.status == "perfect" and check.check(outcome.crowd).ok
-        found.append(Run(outcome, check.summary(outcome.crowd), ok))
+        report = check.check(outcome.crowd)
+        ok = outcome.status == "perfect" and report.ok
+        found.append(Run(outcome, check.summary(outcome.crowd), ok, seams_of(report)))
     return found
+
+
+def seams_of(report: check.Report) -> dict[str, float]:
+    """By seam the largest value in metres of its rows."""
+    worst: dict[str, float] = {}
+    for row in report.rows:
+        seam = row.row.split(":")[0]
+        if seam in ("seam in time", "border") and row.unit == "m":
+            worst[seam] = max(worst.get(seam, 0.0), row.value)
+    return worst
 
 
 def static(scene: Static, patches: PatchSet, seeds: int, say: Say) -> list[Figure]:
@@ -110,4 +123,42 @@ def growth(patches: PatchSet, say: Say) -> list[Figure]:
         per_person = 1000 * run.outcome.solve_secs / people
         figures.append(Figure("area-growth", f"{side} x {side} m, per character", per_person, "ms"))
         say(f"tiling: area-growth: {people} people in {run.outcome.solve_secs:.2f} s")
+    return figures
+
+
+@dataclass(frozen=True)
+class Repeating:
+    """A tile of 10 x 10 m that repeats in some directions."""
+
+    axes: tuple[str, ...]
+    characters: int
+    duration_secs: float
+
+
+REPEATING = (
+    Repeating(("x", "z"), 55, 27.0),
+    Repeating(("t",), 48, 20.0),
+    Repeating(("x", "z", "t"), 40, 20.0),
+)
+PAPER_REPEATING = Static("repeating", 55, 0.3, 813, 55, (83 + 43) * 60)
+
+
+def repeating(patches: PatchSet, seeds: int, say: Say) -> list[Figure]:
+    """Tiles that repeat, checked as 3 x 3 tiles and three laps."""
+    figures = []
+    for tile_of in REPEATING:
+        name = ", ".join(tile_of.axes)
+        text = (
+            f"region = [[0, 0], [10, 0], [10, 10], [0, 10]]\nduration_secs = {tile_of.duration_secs}\n"
+            f"characters = {tile_of.characters}\ninteraction = 0.3\nperiodic = {list(tile_of.axes)}\n"
+        )
+        made = runs(Scene.from_toml(text), patches, seeds)
+        published = tile_of.axes == ("x", "z")
+        figures += figures_of(PAPER_REPEATING if published else Static("repeating", 0, 0.3), made, f"{name}: ")
+        for seam in ("seam in time", "border"):
+            worst = [run.seams[seam] for run in made if seam in run.seams]
+            if worst:
+                figures.append(Figure("repeating", f"{name}: {seam}, worst gap or overlap", max(worst), "m"))
+        secs, good = median(run.outcome.solve_secs for run in made), sum(run.ok for run in made)
+        say(f"tiling: repeating {name}: {secs:.2f} s, {good} of {seeds} perfect and checked")
     return figures

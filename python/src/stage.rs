@@ -9,7 +9,7 @@ use crowdquilt::motion::{BODY_CAPSULES, FPS, JOINT_COUNT, body_capsules, canonic
 use crowdquilt::stage as core;
 use glam::{Quat, Vec3};
 use numpy::{PyArray1, PyArray2, PyArray3};
-use pyo3::exceptions::PyIndexError;
+use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::error::run;
@@ -177,6 +177,24 @@ type People<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray3<f32>>);
 
 #[pymethods]
 impl Crowd {
+    /// Directions in which the crowd repeats: some of `x`, `z`, `t`.
+    #[getter]
+    fn periodic(&self) -> Vec<&'static str> {
+        let repeats = self.0.domain.periodic;
+        let all = [("x", repeats.x), ("z", repeats.z), ("t", repeats.t)];
+        all.into_iter().filter(|axis| axis.1).map(|axis| axis.0).collect()
+    }
+
+    /// The crowd of `x` times `z` tiles and `t` laps, open where it repeated: everybody of the endless crowd who is ever in
+    /// the block. A direction that does not repeat is left as it is.
+    #[pyo3(signature = (x=3, z=3, t=3))]
+    fn unrolled(&self, py: Python, x: u32, z: u32, t: u32) -> PyResult<Self> {
+        if [x, z, t].contains(&0) {
+            return Err(PyValueError::new_err(format!("expected at least one tile and lap, found {x}, {z}, {t}")));
+        }
+        Ok(Self(Arc::new(py.detach(|| self.0.unrolled(x, z, t)))))
+    }
+
     /// Read a crowd file (`*.crowd`).
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {

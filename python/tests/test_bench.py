@@ -23,9 +23,10 @@ def test_rows_are_measured_on_the_scene(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(bench_tiling, "Scene", Small)
     monkeypatch.setattr(bench, "STATIC", [bench_tiling.Static("static-173", 5, 0.0, 173, 16, 18.0)])
     monkeypatch.setattr(bench_tiling, "SIDES", (5,))
+    monkeypatch.setattr(bench_tiling, "REPEATING", (bench_tiling.Repeating(("x", "t"), 6, 8.0),))
     lines: list[str] = []
     rows = {row.row: row for row in bench.AREAS["tiling"](2, lines.append)}
-    assert len(lines) == 2
+    assert len(lines) == 3
     people = rows["static-173: characters, fewest"]
     assert people.ours == 5 and people.ratio == pytest.approx(5 / 16)
     solve = rows["static-173: solve time, median"]
@@ -35,6 +36,9 @@ def test_rows_are_measured_on_the_scene(monkeypatch: pytest.MonkeyPatch) -> None
     danglings = rows["static-173: danglings, all runs"]
     assert danglings.reference == 0 and danglings.ratio is None
     assert rows["static-173: Algorithms 1 and 2 here: solve time, median"].ours > 0
+    assert rows["repeating: x, t: perfect and checked, share"].ours == 1
+    assert rows["repeating: x, t: seam in time, worst gap or overlap"].ours < 0.01
+    assert rows["repeating: x, t: border, worst gap or overlap"].ours < 0.01
     assert rows["area-growth: 5 x 5 m, per character"].ours > 0
 
 

@@ -97,4 +97,23 @@ def test_what_cannot_be_done_is_refused_with_its_name(sample_set: cq.PatchSet) -
         head = 'periodic = ["x"]\n' if key == "periodic" else ""
         scene = cq.Scene.from_toml(head + CART + text)
         with pytest.raises(cq.CrowdquiltError, match=key):
-            cq.tiling.tile(scene, sample_set)
+            cq.tiling.tile(scene, sample_set, method="paper" if key == "periodic" else "engine")
+
+
+def test_a_crowd_that_repeats_is_unrolled_checked_and_drawn(sample_set: cq.PatchSet, tmp_path: Path) -> None:
+    text = "region = [[0, 0], [8, 0], [8, 7], [0, 7]]\nduration_secs = 8\ncharacters = 8\ninteraction = 0.2\n"
+    tile = cq.tiling.tile(cq.Scene.from_toml(text + 'periodic = ["x", "t"]\n'), sample_set, seed=2).crowd
+    assert tile.periodic == ["x", "t"]
+    report = cq.check.check(tile)
+    assert report.ok
+    assert {"seam in time", "border"} <= {row.row.split(":")[0] for row in report.rows}
+    tile.save(tmp_path / "tile.crowd")
+    again = cq.Crowd.load(tmp_path / "tile.crowd")
+    assert again.periodic == tile.periodic
+    block = again.unrolled(x=2, t=2)
+    assert block.periodic == [] and block.frames == 2 * (tile.frames - 1) + 1
+    assert len(block) >= 2 * len(tile) and cq.check.check(block).ok
+    with pytest.raises(ValueError, match="at least one"):
+        tile.unrolled(0)
+    for draw in (plan, loom):
+        assert isinstance(draw(tile), Figure)

@@ -10,15 +10,15 @@ use crate::motion::FPS;
 use crate::stage::Crowd;
 
 #[derive(Default)]
-struct Depths {
-    apart: Worst,
-    together: Worst,
+pub(super) struct Depths {
+    pub apart: Worst,
+    pub together: Worst,
     region: Worst,
     obstacle: Worst,
 }
 
 impl Depths {
-    fn merge(self, other: Self) -> Self {
+    pub(super) fn merge(self, other: Self) -> Self {
         Self {
             apart: self.apart.merge(other.apart),
             together: self.together.merge(other.together),
@@ -44,7 +44,7 @@ pub(super) fn rows(crowd: &Crowd, parts: &[Part], limits: &Limits) -> Vec<Row> {
 }
 
 /// The fragments of every character.
-fn chains<'a, 'b>(crowd: &Crowd, parts: &'b [Part<'a>]) -> Vec<&'b [Part<'a>]> {
+pub(super) fn chains<'a, 'b>(crowd: &Crowd, parts: &'b [Part<'a>]) -> Vec<&'b [Part<'a>]> {
     let mut rest = parts;
     let take = |c: &crate::stage::Character| {
         let (chain, after) = rest.split_at(c.fragments.len());
@@ -85,7 +85,7 @@ fn frame_depths(crowd: &Crowd, chains: &[&[Part]], frame: u32) -> Depths {
     depths
 }
 
-fn bodies_at(crowd: &Crowd, frame: u32) -> Vec<(usize, Body)> {
+pub(super) fn bodies_at(crowd: &Crowd, frame: u32) -> Vec<(usize, Body)> {
     let mut globals = Vec::new();
     let present = crowd.characters.iter().enumerate().filter(|(_, c)| c.frames() > 0 && c.present(frame));
     let body = |(c, character): (usize, &crate::stage::Character)| {
@@ -95,7 +95,7 @@ fn bodies_at(crowd: &Crowd, frame: u32) -> Vec<(usize, Body)> {
     present.map(body).collect()
 }
 
-fn pair_depth(chains: &[&[Part]], frame: u32, (a, b): (usize, usize), depth: f32, depths: &mut Depths) {
+pub(super) fn pair_depth(chains: &[&[Part]], frame: u32, (a, b): (usize, usize), depth: f32, depths: &mut Depths) {
     match shared_patch(chains, frame, a, b) {
         None => depths.apart.offer(depth as f64, || format!("characters {a} and {b}, frame {frame}")),
         Some((role_a, role_b)) => {

@@ -26,6 +26,13 @@ impl Body {
         Self { capsules, center, radius }
     }
 
+    /// The same body somewhere else.
+    pub(super) fn moved(&self, by: Vec2) -> Self {
+        let by3 = Vec3::new(by.x, 0.0, by.y);
+        let capsules = self.capsules.iter().map(|c| Capsule { a: c.a + by3, b: c.b + by3, radius: c.radius }).collect();
+        Self { capsules, center: self.center + by, radius: self.radius }
+    }
+
     /// How deep the deepest pair of capsules of two bodies overlap, metres; 0 if none does.
     pub(super) fn depth_into(&self, other: &Self) -> f32 {
         if self.center.distance(other.center) >= self.radius + other.radius {

@@ -13,6 +13,8 @@
 //! | 6 | planted feet stay, joints turn no further than captured | `plant.rs`, `joint.rs` |
 //! | 2, 4, 5, 7 | boxes are held or rest, palms are on them, they enter nothing and do not fly | `prop.rs` |
 //!
+//! A crowd that repeats is checked as it is unrolled, and its seams in rows of their own (`seam.rs`).
+//!
 //! Clause 8 (same seed, same bytes) is a property of the solver and no crowd can show it.
 
 mod bodies;
@@ -28,6 +30,7 @@ mod plant;
 mod prop;
 mod prop_shape;
 mod report;
+mod seam;
 mod speed;
 mod stitch;
 mod summary;
@@ -53,6 +56,9 @@ pub fn check_with(crowd: &Crowd, limits: &Limits) -> Report {
     let references = chain::references(crowd);
     if !references.ok {
         return Report { rows: vec![references] };
+    }
+    if crowd.domain.periodic.any() {
+        return seam::check(crowd, references, limits);
     }
     let parts = part::parts(crowd);
     let mut rows = vec![references];

@@ -165,6 +165,7 @@ mod tests {
             region: Polygon::rectangle(Vec2::splat(-3.0), Vec2::splat(3.0)),
             obstacles: vec![Polygon::new(points.map(|(x, z)| Vec2::new(x, z)).to_vec()).unwrap().into()],
             last_frame: 0,
+            periodic: crate::geom::Periodic::default(),
         };
         assert!(block.depth_in_walls(&domain([(0.0, 0.0), (2.0, -0.01), (2.0, 0.01)]), 0.0) > 0.05);
         assert_eq!(block.depth_in_walls(&domain([(0.4, 0.0), (2.0, -0.01), (2.0, 0.01)]), 0.0), 0.0);

@@ -1,4 +1,4 @@
-//! Transforms of the ground plane, polygons, obstacles, capsules, boxes.
+//! Transforms of the ground plane, polygons, obstacles, capsules, boxes, domains that repeat.
 
 mod capsule;
 pub mod complex;
@@ -6,9 +6,11 @@ mod cuboid;
 mod ground;
 mod obstacle;
 mod polygon;
+mod torus;
 
 pub use capsule::Capsule;
 pub use cuboid::{Cuboid, Upright};
 pub use ground::{Ground, Turn, wrap_angle};
 pub use obstacle::{Obstacle, Waypoint};
 pub use polygon::Polygon;
+pub use torus::{Cycle, Periodic, Torus};

@@ -13,6 +13,7 @@ mod touch;
 use glam::{Quat, Vec3};
 use rayon::prelude::*;
 
+use crate::geom::Torus;
 use crate::motion::{JOINT_COUNT, Motion, canonical};
 use crate::patch::{PatchKind, filed_rotation};
 use crate::stage::{Character, Crowd, FragmentUse, Prop};
@@ -120,20 +121,20 @@ fn walk(segments: &[Segment], last_frame: u32) -> Body {
 }
 
 /// The final motions of people who act together: each as [`refine`]d alone, but brought to touch again whom they touched,
-/// and boxes go from hand to hand. In parallel over people.
-pub fn refine_all(people: &[Vec<Segment>], last_frame: u32) -> Performance {
+/// and boxes go from hand to hand. On a torus they may be whole periods apart. In parallel over people.
+pub fn refine_all(people: &[Vec<Segment>], last_frame: u32, torus: Torus) -> Performance {
     let mut out = Performance { bodies: vec![Body::default(); people.len()], ..Performance::default() };
     let who: Vec<usize> = (0..people.len()).collect();
-    refine_some(people, &who, last_frame, &mut out);
+    refine_some(people, &who, last_frame, torus, &mut out);
     out
 }
 
 /// The same of some of them only; `who` are their numbers, ascending. Who shares a patch with one of them must be one of
 /// them.
-pub fn refine_some(people: &[Vec<Segment>], who: &[usize], last_frame: u32, out: &mut Performance) {
+pub fn refine_some(people: &[Vec<Segment>], who: &[usize], last_frame: u32, torus: Torus, out: &mut Performance) {
     let people: Vec<Vec<Segment>> = who.iter().map(|&person| people[person].clone()).collect();
     let mut bodies: Vec<Body> = people.par_iter().map(|segments| walk(segments, last_frame)).collect();
-    touch::restore(&people, &mut bodies);
+    touch::restore(&people, &mut bodies, torus);
     let led = prop::lead(&people, &mut bodies, last_frame);
     out.replace(who, bodies, led);
 }
@@ -146,8 +147,14 @@ fn smoothstep(x: f32) -> f32 {
 /// A crowd's full bodies made anew from its fragments and builds alone: what tiling ends with, as a pass of its own. A
 /// crowd as it was baked comes out as it is. O(people x frames), in parallel over people.
 pub fn refine_crowd(crowd: &Crowd) -> Crowd {
+    if crowd.domain.periodic.t {
+        // Everybody's life goes on as it began: the middle one of three laps knows what comes before and after.
+        let last = crowd.domain.last_frame;
+        let laps = refine_crowd(&crowd.laps(3));
+        return Crowd { domain: crowd.domain.clone(), ..laps.cut(last, 2 * last) };
+    }
     let people: Vec<Vec<Segment>> = crowd.characters.iter().map(|c| segments_of(crowd, c)).collect();
-    let Performance { bodies, props, .. } = refine_all(&people, crowd.domain.last_frame);
+    let Performance { bodies, props, .. } = refine_all(&people, crowd.domain.last_frame, crowd.domain.torus());
     let dress = |((body, segments), c): ((Body, &Vec<Segment>), &Character)| {
         let body = fit(&body, &holds(segments, body.begin), &c.build);
         let rotations = body.rotations.into_iter().map(filed_rotation).collect();

@@ -9,6 +9,7 @@ use glam::{Quat, Vec3};
 use super::arm::{fade, move_hand};
 use super::carry::ground_at;
 use super::{Body, Segment};
+use crate::geom::Torus;
 use crate::motion::BodyPart;
 use crate::motion::contacts::palm;
 use crate::motion::joint::{HEAD, LEFT_HAND, RIGHT_HAND, SPINE2};
@@ -27,7 +28,7 @@ struct Player<'a> {
 }
 
 /// Leads touching hands together in all instances, in order of time. Errors below a tenth of a millimetre are left alone.
-pub(super) fn restore(people: &[Vec<Segment>], bodies: &mut [Body]) {
+pub(super) fn restore(people: &[Vec<Segment>], bodies: &mut [Body], torus: Torus) {
     let mut instances: BTreeMap<u32, Vec<Player>> = BTreeMap::new();
     for (person, segments) in people.iter().enumerate() {
         for segment in segments.iter().filter(|s| !s.kind.contacts.is_empty()) {
@@ -41,13 +42,13 @@ pub(super) fn restore(people: &[Vec<Segment>], bodies: &mut [Body]) {
         for contact in &players[0].segment.kind.contacts {
             let player = |t: &Touch| players.iter().find(|p| p.segment.placed.role == t.role);
             if let (Some(a), Some(b)) = (player(&contact.a), player(&contact.b)) {
-                join(*a, *b, contact, bodies);
+                join(*a, *b, contact, bodies, torus);
             }
         }
     }
 }
 
-fn join(a: Player, b: Player, contact: &Contact, bodies: &mut [Body]) {
+fn join(a: Player, b: Player, contact: &Contact, bodies: &mut [Body], torus: Torus) {
     let parts = [contact.a.part, contact.b.part];
     let leads = match parts.map(hand_of) {
         [Some(_), Some(_)] => [0.5, -0.5],
@@ -57,7 +58,7 @@ fn join(a: Player, b: Player, contact: &Contact, bodies: &mut [Body]) {
     };
     let players = [a, b];
     let (first, last) = span(players, contact, bodies);
-    let gaps: Vec<Vec3> = (first..=last).map(|f| gap(players, parts, f, bodies)).collect();
+    let gaps: Vec<Vec3> = (first..=last).map(|f| torus.nearest3(gap(players, parts, f, bodies))).collect();
     if gaps.iter().all(|g| g.length() < 1e-4) {
         return;
     }
@@ -196,7 +197,7 @@ mod tests {
         let players = [0, 1].map(|person| Player { person, segment: &people[person][0] });
         let apart = |bodies: &[Body], frame| gap(players, [BodyPart::RightHand; 2], frame, bodies).length();
         assert!(apart(&bodies, 30) > 0.039);
-        restore(&people, &mut bodies);
+        restore(&people, &mut bodies, Torus::default());
         for frame in 25..=45 {
             assert!(apart(&bodies, frame) < 1e-3, "frame {frame}: {}", apart(&bodies, frame));
         }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{Quat, Vec2, Vec3};
 
 use super::Prop;
-use crate::geom::{Obstacle, Polygon};
+use crate::geom::{Obstacle, Periodic, Polygon, Torus};
 use crate::motion::{Build, FPS, JOINT_COUNT, Skeleton};
 use crate::patch::PatchSet;
 
@@ -16,8 +16,21 @@ pub struct DomainInfo {
     pub region: Polygon,
     /// Everybody stays out.
     pub obstacles: Vec<Obstacle>,
-    /// The crowd lives from frame 0 to this frame, inclusive; the time is open at both ends (cropped).
+    /// The crowd lives from frame 0 to this frame, inclusive; the time is open at both ends (cropped), unless it repeats:
+    /// then this frame is the first one again.
     pub last_frame: u32,
+    /// In which directions the crowd repeats: along x and z with the region, a rectangle; in time with the last frame.
+    /// People's places go on as they are where they cross a border.
+    #[serde(default, skip_serializing_if = "Periodic::none")]
+    pub periodic: Periodic,
+}
+
+impl DomainInfo {
+    /// What is the same place.
+    pub fn torus(&self) -> Torus {
+        let (low, high) = self.region.bounds();
+        Torus::new(low, high, self.periodic)
+    }
 }
 
 /// A placed patch.

@@ -15,8 +15,14 @@
 //! fragments; `prop_places` f32 x,y,z of the box's middle and heading (turn about +y, radians; boxes stay level) per
 //! frame, all boxes one after the other; and the patch set's arrays with the prefix `set_`.
 //!
-//! Versions: 1 had no `props`, 2 no `height` and `path` of obstacles; all are read, 3 is written where it is needed, else
-//! 2.
+//! A crowd that repeats has `domain.periodic` (`x`, `z`, `t`: true where it does). Along x and z the periods are the sides of
+//! the region, a rectangle; places are not wrapped: who crosses a border goes on outside, and stands for all images a
+//! whole number of periods away. In time the last frame is the first one again: everybody is there over all frames, and
+//! ends where they began but for whole periods. A patch over the seam is given at both ends, as two instances. Such a crowd
+//! has no boxes.
+//!
+//! Versions: 1 had no `props`, 2 no `height` and `path` of obstacles, 3 no `periodic`; all are read, the first of 2 to 4
+//! that can say it is written.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -31,7 +37,9 @@ use crate::patch::{PatchSet, pack_rotation, unpack_rotation};
 use crate::{Error, Result};
 
 const MAGIC: &[u8; 8] = b"CQCROWD\0";
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
+/// What crowds are written as that do not repeat.
+const OPEN: u32 = 3;
 /// What crowds are written as whose obstacles are all walls.
 const WALLS_ONLY: u32 = 2;
 
@@ -108,7 +116,12 @@ impl Crowd {
             set,
         };
         let walls_only = self.domain.obstacles.iter().all(Obstacle::is_wall);
-        writer.finish(MAGIC, if walls_only { WALLS_ONLY } else { VERSION }, &header)
+        let version = match (self.domain.periodic.any(), walls_only) {
+            (true, _) => VERSION,
+            (false, true) => WALLS_ONLY,
+            (false, false) => OPEN,
+        };
+        writer.finish(MAGIC, version, &header)
     }
 
     /// A crowd from the bytes of a crowd file.
@@ -134,6 +147,9 @@ impl Crowd {
         let problem = |(i, o): (usize, &Obstacle)| Some((i, o.problem()?));
         if let Some((i, problem)) = header.domain.obstacles.iter().enumerate().find_map(problem) {
             return Err(Error::invalid("crowd", format!("obstacle {i}"), problem));
+        }
+        if let Some(problem) = repeat_problem(&header.domain, props.len()) {
+            return Err(Error::invalid("crowd", "domain", problem));
         }
         let crowd =
             Self { seed: header.seed, domain: header.domain, set, instances: header.instances, characters, props };
@@ -191,6 +207,21 @@ impl Crowd {
         }
         Ok(())
     }
+}
+
+/// What keeps a crowd from repeating as it says, if anything.
+fn repeat_problem(domain: &DomainInfo, boxes: usize) -> Option<String> {
+    let (low, high) = domain.region.bounds();
+    let is_corner = |p: &Vec2| (p.x == low.x || p.x == high.x) && (p.y == low.y || p.y == high.y);
+    let rectangle = domain.region.points.len() == 4 && domain.region.points.iter().all(is_corner);
+    let periodic = domain.periodic;
+    if periodic.in_space() && !(rectangle && high.cmpgt(low).all()) {
+        return Some("expected a rectangle along x and z as a region that repeats".into());
+    }
+    if periodic.t && domain.last_frame == 0 {
+        return Some("expected a last frame after 0 where time repeats, found 0".into());
+    }
+    (periodic.any() && boxes > 0).then(|| format!("expected no boxes in a crowd that repeats, found {boxes}"))
 }
 
 /// The builds that characters refer to.

@@ -2,7 +2,9 @@
 
 mod crowd;
 mod file;
+mod laps;
 mod prop;
+mod tiles;
 pub mod world;
 
 pub use crowd::{Character, Crowd, DomainInfo, FragmentUse, Instance};

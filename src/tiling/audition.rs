@@ -4,7 +4,7 @@
 use glam::{Quat, Vec3};
 
 use super::figure::{Figure, TOLERANCE};
-use crate::geom::Capsule;
+use crate::geom::{Capsule, Torus};
 use crate::motion::{Motion, body_capsules};
 use crate::patch::PatchKind;
 use crate::refine::{Body, Segment, refine_all};
@@ -64,7 +64,7 @@ fn play(kind: &PatchKind) -> Vec<Body> {
     let placed: Vec<FragmentUse> = (0..kind.people()).map(|role| as_captured(kind, role)).collect();
     let people: Vec<Vec<Segment>> = placed.iter().map(|placed| vec![Segment { kind, placed }]).collect();
     let last = placed.iter().map(|p| p.end).max().unwrap_or(0);
-    refine_all(&people, last as u32).bodies
+    refine_all(&people, last as u32, Torus::default()).bodies
 }
 
 fn as_captured(kind: &PatchKind, role: usize) -> FragmentUse {

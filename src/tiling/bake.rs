@@ -2,12 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use glam::{Vec2, Vec3};
+
 use super::Scene;
 use super::builds::people;
 use super::domain::Domain;
 use super::library::Library;
 use super::occupancy::{Occupancy, PieceId};
-use super::piece::Piece;
+use super::piece::{Piece, Shift};
+use crate::motion::JOINT_COUNT;
 use crate::patch::{PatchKind, filed_rotation};
 use crate::refine::{Body, Performance};
 use crate::stage::{Character, Crowd, DomainInfo, FragmentUse, Instance};
@@ -38,7 +41,13 @@ impl<'a> Chains<'a> {
 
     /// The piece a person is in at `tick`.
     pub fn piece_at(self, person: usize, tick: i32) -> Option<&'a Piece> {
+        let tick = self.fold(person, tick);
         self.pieces(person).find(|p| tick < p.end)
+    }
+
+    /// A tick as a person's pieces count them.
+    pub fn fold(self, person: usize, tick: i32) -> i32 {
+        self.pieces(person).next().map_or(tick, |first| self.domain.cycle.fold(tick, first.begin))
     }
 
     /// Of the instances that two people are in at `tick`, the one with fewer people.
@@ -58,45 +67,69 @@ impl<'a> Chains<'a> {
     }
 }
 
-/// The fragments of a person that are seen within the domain's time, in order: kind and placement.
+/// Numbers of instances begin again here for each lap.
+const LAP: u32 = 1 << 27;
+
+/// The fragments of a person that are seen within the domain's time, in order: kind and placement. Where time comes
+/// round: within three laps, of which the second counts; an instance is another one in every lap.
 pub(super) fn segments_of<'a>(chains: Chains<'a>, person: usize) -> Vec<(&'a PatchKind, FragmentUse)> {
-    uses(chains.library, chains.domain.horizon, chains.pieces(person))
+    uses(chains.library, chains.domain, chains.pieces(person))
 }
 
 /// The same of some pieces in order of time.
 pub(super) fn uses<'a, 'p>(
     library: &Library<'a>,
-    horizon: i32,
+    domain: &Domain,
     pieces: impl Iterator<Item = &'p Piece>,
 ) -> Vec<(&'a PatchKind, FragmentUse)> {
-    let seen = pieces.filter(|p| p.end > 0 && p.begin < horizon);
-    seen.map(|piece| {
-        let role = &library.roles[piece.role as usize];
-        let placed = FragmentUse {
-            instance: piece.instance,
-            role: role.role,
-            begin: piece.begin,
-            end: piece.end,
-            points: piece.path.points.clone(),
-            headings: piece.path.headings.clone(),
-        };
-        (&library.set.kinds[role.kind as usize], placed)
-    })
-    .collect()
+    let pieces: Vec<&Piece> = pieces.collect();
+    let last = if domain.cycle.loops() { domain.last_frame() as i32 } else { domain.horizon };
+    let all = laps(domain, &pieces).into_iter().flat_map(|by| pieces.iter().map(move |piece| (by, *piece)));
+    let seen = all.filter(|(by, p)| p.end + by.ticks > 0 && p.begin + by.ticks < last);
+    seen.map(|(by, piece)| placed(library, domain, piece, by)).collect()
+}
+
+/// By how much a person's pieces are shifted to be seen: nothing, or three times by another lap.
+fn laps(domain: &Domain, pieces: &[&Piece]) -> Vec<Shift> {
+    let (true, Some(first), Some(last)) = (domain.cycle.loops(), pieces.first(), pieces.last()) else {
+        return vec![Shift::default()];
+    };
+    let lap = domain.cycle.ticks();
+    let place = domain.torus.whole(last.exit().position - first.entry().position);
+    let from = (-first.begin).div_euclid(lap) - 1;
+    (from..from + 5).map(|k| Shift { place: place * (k - from) as f32, ticks: k * lap }).collect()
+}
+
+fn placed<'a>(library: &Library<'a>, domain: &Domain, piece: &Piece, by: Shift) -> (&'a PatchKind, FragmentUse) {
+    let role = &library.roles[piece.role as usize];
+    let begin = piece.begin + by.ticks;
+    // All of an instance are in the lap in which its clock begins.
+    let lap = if domain.cycle.loops() { (begin - role.begin).div_euclid(domain.cycle.ticks()) + 4 } else { 0 };
+    let placed = FragmentUse {
+        instance: piece.instance.wrapping_add(lap as u32 * LAP),
+        role: role.role,
+        begin,
+        end: piece.end + by.ticks,
+        points: piece.path.points.iter().map(|&p| p + by.place).collect(),
+        headings: piece.path.headings.clone(),
+    };
+    (&library.set.kinds[role.kind as usize], placed)
 }
 
 /// The finished crowd. Instances are numbered in the order in which people meet them.
 pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, played: Performance) -> Crowd {
     let Performance { bodies, props, .. } = played;
     let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
+    let instances_of_a_lap = if chains.domain.cycle.loops() { LAP } else { u32::MAX };
     let mut instances = Vec::new();
     let mut characters = Vec::with_capacity(bodies.len());
     for (person, (build, body)) in people(chains, &bodies, &props, seed).into_iter().enumerate() {
         let mut fragments: Vec<FragmentUse> =
             segments_of(chains, person).into_iter().map(|(_, placed)| placed).collect();
+        let body = last_lap_but_one(chains.domain, body, &mut fragments);
         let roles: BTreeMap<u32, u32> = chains.pieces(person).map(|p| (p.instance, p.role)).collect();
         for f in &mut fragments {
-            let kind = chains.library.roles[roles[&f.instance] as usize].kind;
+            let kind = chains.library.roles[roles[&(f.instance % instances_of_a_lap)] as usize].kind;
             f.instance = *numbers.entry(f.instance).or_insert_with(|| {
                 instances.push(Instance { kind });
                 instances.len() as u32 - 1
@@ -111,6 +144,31 @@ pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, played: Performance
         region: scene.region.clone(),
         obstacles: scene.obstacles.clone(),
         last_frame: scene.last_frame() as u32,
+        periodic: scene.periodic,
     };
     Crowd { seed, domain, set: chains.library.set.clone(), instances, characters, props }
+}
+
+/// What is kept of a life: of three laps the second, its last frame being the first of the third. Where the ground
+/// repeats it begins inside the region.
+fn last_lap_but_one(domain: &Domain, mut body: Body, fragments: &mut Vec<FragmentUse>) -> Body {
+    let frames = domain.frames();
+    if domain.cycle.loops() {
+        let skipped = (frames.start - body.begin as i32) as usize;
+        let kept = skipped..skipped + domain.horizon as usize + 1;
+        body.root = body.root[kept.clone()].to_vec();
+        body.rotations = body.rotations[kept.start * JOINT_COUNT..kept.end * JOINT_COUNT].to_vec();
+        body.begin = 0;
+        fragments.retain(|f| f.end > frames.start && f.begin < frames.end);
+    }
+    let root = body.root[0];
+    let away = domain.torus.whole(Vec2::new(root.x, root.z) - (domain.min + domain.max) * 0.5);
+    if !domain.torus.is_plane() {
+        body.root.iter_mut().for_each(|p| *p -= Vec3::new(away.x, 0.0, away.y));
+        fragments.iter_mut().flat_map(|f| &mut f.points).for_each(|p| *p -= away);
+    }
+    for f in fragments {
+        (f.begin, f.end) = (f.begin - frames.start, f.end - frames.start);
+    }
+    body
 }

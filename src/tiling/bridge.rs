@@ -12,7 +12,6 @@ use rustc_hash::FxHashSet;
 use super::domain::Spot;
 use super::library::{Closing, Library, Move, Span};
 use super::piece::{Company, Piece, Rigid};
-use super::prefer::Stay;
 use super::view::View;
 use crate::geom::{Ground, wrap_angle};
 use crate::motion::{FPS, MotionPath};
@@ -62,6 +61,8 @@ const SLACK: f32 = 0.5;
 const EASY_REACH: f32 = 0.45;
 const EASY_TURN: f32 = 0.6;
 const MAX_TURN: f32 = std::f32::consts::FRAC_PI_3;
+/// Ways to a port that take longer than this are long, seconds.
+const LONG_WAY: f32 = 4.0;
 /// A state this close to a wall leads nowhere.
 const WALL_ROOM: f32 = 0.3;
 /// Steps sideways and back cost this much more than walking ahead: people turn to where they go.
@@ -253,9 +254,8 @@ impl Bridge {
             let place = from.at.position + turn.apply(step.to.position);
             let at = Ground::new(place, from.at.heading + step.to.heading);
             let at = Port { at, tick: from.tick + direction * step.ticks, group: step.group };
-            let inside = at.tick < 0
-                || at.tick > view.domain.horizon
-                || view.domain.holds(Spot::ground(at.tick), at.at.position, WALL_ROOM);
+            let inside =
+                view.domain.is_unseen(at.tick) || view.domain.holds(Spot::ground(at.tick), at.at.position, WALL_ROOM);
             if !inside || self.seen.contains(&key(&at)) {
                 continue;
             }
@@ -399,7 +399,7 @@ fn leap_weight(view: View, step: &Move, from: &Port, goal: Goal) -> f32 {
 
 /// Equation 7: what a step costs more for leading where, when or which way nobody wants to be.
 fn price(view: View, step: &Move, to: &Port) -> f32 {
-    view.library.preference.price(view.library.roles[step.role as usize].kind, Stay::new(to.at, to.tick))
+    view.library.preference.price(view.library.roles[step.role as usize].kind, view.domain.stay(to.at, to.tick))
 }
 
 /// Cost of the time over which a step leaves a box lying about.
@@ -421,7 +421,9 @@ fn cost_left(at: &Port, goal: Goal, price: f32) -> Option<f32> {
             let reachable = left > 0.0 && distance <= TOP_SPEED * left + SLACK;
             let turn = wrap_angle(to.at.heading - at.at.heading).abs() - MAX_TURN;
             let late = (distance - EASY_SPEED * left).max(0.0) + TURN_WEIGHT * (turn - left).max(0.0);
-            reachable.then_some(TIME_WEIGHT * left + LATE_WEIGHT * late)
+            // A short way ends at the goal's price, a long one goes on at that of the present place.
+            let price = if left > LONG_WAY { price } else { 1.0 };
+            reachable.then_some(price * TIME_WEIGHT * left + LATE_WEIGHT * late)
         }
     }
 }

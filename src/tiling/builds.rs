@@ -130,7 +130,7 @@ impl<'a> Fitting<'a> {
     fn clashes(&self, changed: &[bool]) -> Vec<(usize, usize)> {
         let at_tick = |tick: i32| -> Vec<(usize, usize)> {
             let mut pairs = Vec::new();
-            let places = Places::at(tick, self.worn.iter().map(|w| &w.body));
+            let places = Places::at(tick, self.worn.iter().map(|w| &w.body), self.chains.domain.torus);
             places.pairs(
                 changed,
                 |p| self.figure(p, tick),
@@ -142,8 +142,7 @@ impl<'a> Fitting<'a> {
             );
             pairs
         };
-        let horizon = self.chains.domain.horizon;
-        let mut all: Vec<(usize, usize)> = (0..horizon).into_par_iter().flat_map_iter(at_tick).collect();
+        let mut all: Vec<(usize, usize)> = self.chains.domain.frames().into_par_iter().flat_map_iter(at_tick).collect();
         all.sort_unstable();
         all.dedup();
         all
@@ -157,7 +156,7 @@ impl<'a> Fitting<'a> {
         let instance = |p: usize| self.chains.piece_at(p, tick).map(|piece| piece.instance);
         let allowed = if instance(p) == instance(q) { TOGETHER } else { 0.0 };
         match (self.canonical_figure(p, tick), self.canonical_figure(q, tick)) {
-            (Some(a), Some(b)) => depth > a.depth_into(&b) + allowed,
+            (Some(a), Some(b)) => depth > a.depth_into(&b.beside(&a, self.chains.domain.torus)) + allowed,
             _ => true,
         }
     }
@@ -170,7 +169,7 @@ impl<'a> Fitting<'a> {
             if here.is_empty() {
                 return vec![];
             }
-            let places = Places::at(tick, self.worn.iter().map(|w| &w.body));
+            let places = Places::at(tick, self.worn.iter().map(|w| &w.body), self.chains.domain.torus);
             let near = |(prop, cuboid): &(&Prop, Cuboid)| {
                 let near = places.near(cuboid.at.ground().position, REACH + cuboid.radius());
                 let strangers = near.filter(|&p| changed[p] && prop.holders(tick as u32).all(|h| h != p as u32));
@@ -178,8 +177,7 @@ impl<'a> Fitting<'a> {
             };
             here.iter().flat_map(near).collect()
         };
-        let horizon = self.chains.domain.horizon;
-        let mut all: Vec<usize> = (0..horizon).into_par_iter().flat_map_iter(at_tick).collect();
+        let mut all: Vec<usize> = self.chains.domain.frames().into_par_iter().flat_map_iter(at_tick).collect();
         all.sort_unstable();
         all.dedup();
         all

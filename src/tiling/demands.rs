@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::{Method, Scene};
+use super::{Method, Scene, repeat};
 use crate::patch::{PatchKind, PatchSet};
 use crate::{Error, Result};
 
@@ -23,7 +23,7 @@ pub(super) fn admitted<'a>(scene: &Scene, set: &'a PatchSet, method: Method) -> 
     let used = |kind: &PatchKind| {
         let placed = scene.placed.iter().any(|p| p.kind == kind.name);
         let wanted = scene.kinds.lets_pass(&kind.labels) && (!has(kind, JUMP) || may_jump(scene)) && !has(kind, STAGED);
-        placed || wanted
+        (placed || wanted) && (scene.periodic.none() || repeat::can_repeat(kind))
     };
     if set.kinds.iter().all(used) {
         return Ok(Cow::Borrowed(set));
@@ -54,7 +54,7 @@ fn possible(scene: &Scene, method: Method) -> Result<()> {
         ("place", method == Method::Paper && !scene.placed.is_empty()),
         ("team", !scene.teams.is_empty()),
         ("rivals", !scene.rivals.is_empty()),
-        ("periodic", scene.periodic.any()),
+        ("periodic", method == Method::Paper && scene.periodic.any()),
     ];
     let name = match method {
         Method::Engine => "the engine",
@@ -62,7 +62,7 @@ fn possible(scene: &Scene, method: Method) -> Result<()> {
     };
     match asked.iter().find(|a| a.1) {
         Some((key, _)) => Err(Error::invalid("scene", *key, format!("{name} cannot do this yet; leave it out"))),
-        None => Ok(()),
+        None => repeat::possible(scene),
     }
 }
 
@@ -130,6 +130,8 @@ mod tests {
         let preference = Preference { terms: vec![Term { form, strength: 1.0, labels: vec![], during: None }] };
         assert!(problem(&Scene { preference, ..Scene::demo() }).contains("\"hug\""));
         let periodic = Periodic { x: true, ..Periodic::default() };
-        assert!(problem(&Scene { periodic, ..Scene::demo() }).contains("periodic"));
+        let repeating = Scene { periodic, ..Scene::demo() };
+        assert!(admitted(&repeating, &set(), Method::Paper).unwrap_err().to_string().contains("periodic"));
+        assert!(admitted(&repeating, &set(), Method::Engine).is_ok());
     }
 }

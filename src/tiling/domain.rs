@@ -2,8 +2,9 @@
 
 use glam::Vec2;
 
-use super::Scene;
-use crate::geom::{Obstacle, Polygon, Turn};
+use super::prefer::Stay;
+use super::{Scene, repeat};
+use crate::geom::{Cycle, Ground, Obstacle, Polygon, Torus, Turn};
 use crate::motion::FPS;
 use crate::{Error, Result};
 
@@ -36,6 +37,10 @@ pub(super) struct Domain {
     pub max: Vec2,
     /// Bodies are looked at on ticks 0..horizon.
     pub horizon: i32,
+    /// What is the same place.
+    pub torus: Torus,
+    /// What is the same moment.
+    pub cycle: Cycle,
     region: Polygon,
     walls: Vec<Polygon>,
     movers: Vec<Mover>,
@@ -58,10 +63,14 @@ impl Domain {
                 format!("{} x {} m is too large", max.x - min.x, max.y - min.y),
             ));
         }
+        // Where time comes round, the last frame is the first one.
+        let loops = scene.periodic.t;
         let mut domain = Self {
             min,
             max,
-            horizon: scene.last_frame() + 1,
+            horizon: scene.last_frame() + i32::from(!loops),
+            torus: Torus::new(min, max, scene.periodic),
+            cycle: if loops { Cycle::new(scene.last_frame()) } else { Cycle::default() },
             region: scene.region.clone(),
             walls: scene.obstacles.iter().filter(|o| o.is_wall()).map(|o| o.outline.clone()).collect(),
             movers: scene
@@ -86,14 +95,54 @@ impl Domain {
 
     /// Distance to the nearest wall or obstacle that stands and is over all heads; negative beyond.
     pub fn exact_clearance(&self, p: Vec2) -> f32 {
-        let inside = -self.region.signed_distance(p);
-        self.walls.iter().map(|o| o.signed_distance(p)).fold(inside, f32::min)
+        let from_walls = |o: &Polygon| repeat::distance(o, self.torus, p);
+        self.walls.iter().map(from_walls).fold(self.inside(p), f32::min)
+    }
+
+    /// Distance to the nearest border that does not repeat; negative beyond.
+    fn inside(&self, p: Vec2) -> f32 {
+        let period = self.torus.period();
+        if self.torus.is_plane() {
+            return -self.region.signed_distance(p);
+        }
+        // A rectangle, of which sides that repeat are none.
+        let room = (p - self.min).min(self.max - p);
+        Vec2::select(period.cmpeq(Vec2::ZERO), room, Vec2::splat(f32::MAX)).min_element()
+    }
+
+    /// True if what happens at a tick is not seen: before the first and after the last.
+    #[inline]
+    pub fn is_unseen(&self, tick: i32) -> bool {
+        !self.cycle.loops() && (tick < 0 || tick > self.horizon)
+    }
+
+    /// The ticks of a patch on which its bodies are looked at.
+    #[inline]
+    pub fn seen(&self, begin: i32, end: i32) -> std::ops::Range<i32> {
+        if self.cycle.loops() { begin..end } else { begin.max(0)..end.min(self.horizon) }
+    }
+
+    /// The ticks on which final bodies are looked at. Where time comes round they are those of the second lap of three:
+    /// blends and planted feet reach into the first and the third.
+    pub fn frames(&self) -> std::ops::Range<i32> {
+        let first = self.cycle.ticks();
+        first..first + self.horizon
+    }
+
+    /// The last tick for which final bodies are made.
+    pub fn last_frame(&self) -> u32 {
+        (if self.cycle.loops() { 3 * self.horizon } else { self.horizon - 1 }) as u32
+    }
+
+    /// Somebody at a place and moment, as preferences know them.
+    pub fn stay(&self, at: Ground, tick: i32) -> Stay {
+        Stay::new(Ground::new(self.torus.wrap(at.position), at.heading), self.cycle.slot(tick))
     }
 
     /// True if a disc certainly lies inside the region and outside the obstacles, or above them.
     #[inline]
     pub fn holds(&self, at: Spot, center: Vec2, radius: f32) -> bool {
-        self.is_within_walls(center, radius) && self.movers.iter().all(|m| m.is_clear(at, center, radius))
+        self.is_within_walls(center, radius) && self.movers.iter().all(|m| m.is_clear(at, center, radius, self))
     }
 
     /// A place over one of the low obstacles (which one: any number) at a tick, `aside` from its middle: each between -1
@@ -102,18 +151,19 @@ impl Domain {
         let low = || self.movers.iter().filter(|m| m.height.is_finite());
         let mover = low().nth(which.checked_rem(low().count())?)?;
         let (low, high) = mover.outline.bounds();
-        let (place, turn) = mover.at(tick);
+        let (place, turn) = mover.at(self.cycle.slot(tick));
         Some(place + turn.apply(aside * (high - low) * 0.5))
     }
 
     /// True if there is a low obstacle under a place at a tick.
     pub fn is_over_obstacle(&self, tick: i32, place: Vec2) -> bool {
         let low = self.movers.iter().filter(|m| m.height.is_finite());
-        low.into_iter().any(|m| !m.is_clear(Spot::ground(tick), place, 0.0))
+        low.into_iter().any(|m| !m.is_clear(Spot::ground(tick), place, 0.0, self))
     }
 
     #[inline]
     fn is_within_walls(&self, center: Vec2, radius: f32) -> bool {
+        let center = self.torus.wrap(center);
         // The nearest node; casts round towards zero.
         let cell = (center - self.min) / CELL + 0.5;
         if cell.x < 0.0 || cell.y < 0.0 || cell.x >= self.columns as f32 || cell.y >= self.rows as f32 {
@@ -163,12 +213,12 @@ impl Mover {
         self.places[(tick.max(0) as usize).min(self.places.len() - 1)]
     }
 
-    fn is_clear(&self, at: Spot, center: Vec2, radius: f32) -> bool {
+    fn is_clear(&self, at: Spot, center: Vec2, radius: f32, domain: &Domain) -> bool {
         if at.lift >= self.height {
             return true;
         }
-        let (place, turn) = self.at(at.tick);
-        let (away, reach) = (center - place, self.radius + radius);
+        let (place, turn) = self.at(domain.cycle.slot(at.tick));
+        let (away, reach) = (domain.torus.nearest(center - place), self.radius + radius);
         if away.length_squared() >= reach * reach {
             return true;
         }

@@ -1,14 +1,23 @@
 //! A draft: a change to the tiling while it is worked out. It reads the tiling and writes on a desk of its own, so that
 //! many can be worked out side by side; whether one can still be made is seen when it is applied.
 
+use glam::Vec2;
+use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::bridge::{Bridge, Goal, NO_INSTANCE, Port, Taste};
+use super::domain::Domain;
 use super::occupancy::PieceId;
-use super::piece::{Company, Piece};
+use super::piece::{Company, Piece, Shift};
 use super::sketch::{Mark, Sketch};
 use super::tracks::{Change, NEWCOMER, TrackId, Tracks, Window};
 use super::view::View;
+
+/// Tries for a life to come round to where it began, and the fewest states expanded in each.
+const ROUNDS: usize = 2;
+const ROUND_EXPANSIONS: usize = 400;
+/// How far from straight home, in periods, people may end up: some walk on through the tiles.
+const ASTRAY: f32 = 0.6;
 
 /// What working out a change takes, used again and again.
 #[derive(Default)]
@@ -29,7 +38,7 @@ pub(super) struct Draft<'a> {
 impl<'a> Draft<'a> {
     /// No change.
     pub fn new(base: &'a Tracks<'a>, desk: &'a mut Desk) -> Self {
-        desk.sketch.take();
+        desk.sketch.begin(base.domain.cycle);
         Self { base, desk, tracks: vec![], instances: 0 }
     }
 
@@ -90,6 +99,39 @@ impl<'a> Draft<'a> {
         Some(chain.into_iter().map(|piece| self.add(piece)).collect())
     }
 
+    /// Searches a chain that ends the life of somebody who walks alone: at the end of time, or where it began.
+    pub fn lead_to_the_end(
+        &mut self,
+        begin: Port,
+        from: Port,
+        taste: Taste,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Vec<PieceId>> {
+        match self.base.domain.cycle.loops() {
+            true => self.come_round(from, begin, Company::NONE, taste, rng),
+            false => self.search(from, Goal::Until(self.base.domain.horizon), Company::NONE, taste, rng),
+        }
+    }
+
+    /// Searches a chain from where a life has got to round to where it began, a lap later; there, or a tile away.
+    pub fn come_round(
+        &mut self,
+        from: Port,
+        begin: Port,
+        company: Company,
+        taste: Taste,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Vec<PieceId>> {
+        let Domain { torus, cycle, .. } = *self.base.domain;
+        let taste = Taste { expansions: taste.expansions.max(ROUND_EXPANSIONS), ..taste };
+        (0..ROUNDS).find_map(|_| {
+            let beside = Vec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * torus.period();
+            let place = torus.whole(from.at.position + beside * ASTRAY - begin.at.position);
+            let to = Shift { place, ticks: cycle.ticks() }.port(begin);
+            self.search(from, Goal::Port(to), company, taste, rng)
+        })
+    }
+
     /// Puts a piece in.
     pub fn add(&mut self, piece: Piece) -> PieceId {
         self.desk.sketch.add(piece)
@@ -145,6 +187,7 @@ impl<'a> Draft<'a> {
         let (begin, end) = (self.base.port(track, from), self.base.port(track, to));
         let open = to == self.base.tracks[track].len();
         let (begin, goal) = match (from == 0, open) {
+            _ if self.base.domain.cycle.loops() => (begin, Goal::Port(end)),
             (_, true) => (begin, Goal::Until(self.base.domain.horizon)),
             (true, false) => (end, Goal::Since(0)),
             (false, false) => (begin, Goal::Port(end)),

@@ -370,6 +370,9 @@ impl Engine<'_> {
             if faults.is_empty() || !self.goes_on(Phase::Mend) {
                 return;
             }
+            for fault in &rehearsal.faults {
+                [fault.a, fault.b].into_iter().for_each(|track| self.crew.tracks.cut_away_from(track, fault.tick));
+            }
             let gentle = round < GENTLE_ROUNDS;
             let propose = |i: usize, draft: &mut Draft, rng: &mut ChaCha8Rng| match gentle {
                 true => mend(draft, faults[i], taste, rng),

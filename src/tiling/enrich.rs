@@ -13,8 +13,7 @@ use super::domain::Spot;
 use super::draft::Draft;
 use super::library::Role;
 use super::occupancy::PieceId;
-use super::piece::{Company, Piece};
-use super::prefer::Stay;
+use super::piece::{Company, Piece, Shift};
 use super::tracks::{TrackId, Tracks, Window};
 use super::tryout::is_clean;
 use crate::geom::Ground;
@@ -68,12 +67,11 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
     let lead_role = rng.random_range(roles.clone());
     let lead_track = rng.random_range(0..tracks.tracks.len());
     let lead = &library.roles[lead_role as usize];
-    let horizon = tracks.domain.horizon;
     let (at, tick, joint) = meeting_point(tracks, lead_track, lead, ticks, rng);
     if !fits_hands(tracks, lead_track, lead.entry_group, tick) {
         return None;
     }
-    if !library.preference.is_wanted(kind, Stay::new(at, tick), rng) {
+    if !library.preference.is_wanted(kind, tracks.domain.stay(at, tick), rng) {
         return None;
     }
     let world_from_patch = at.then(lead.entry.inverse());
@@ -84,7 +82,7 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
     for role in roles {
         let (mut entry, exit) = library.ports(role, world_from_patch, clock);
         let room = |p: &Port| {
-            p.tick < 0 || p.tick > horizon || tracks.domain.holds(Spot::ground(p.tick), p.at.position, WALL_ROOM)
+            tracks.domain.is_unseen(p.tick) || tracks.domain.holds(Spot::ground(p.tick), p.at.position, WALL_ROOM)
         };
         if !room(&entry) || !room(&exit) {
             return None;
@@ -93,8 +91,10 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
         let part = if role != lead_role {
             let taken = |t: TrackId| t == lead_track || parts.iter().any(|p| p.track == t);
             let heir = heir(tracks, role, exit, world_from_patch, clock);
-            let (track, from, to) = player(tracks, &entry, &heir, taken, &mut near, rng)?;
-            part(track, from, to)
+            let (track, shift, from, to) = player(tracks, &entry, &exit, &heir, taken, &mut near, rng)?;
+            Part { entry: shift.port(entry), exit: shift.port(exit), ..part(track, from, to) }
+        } else if !tracks.spans(lead_track, entry.tick, exit.tick) {
+            return None;
         } else if let Some(joint) = joint {
             // The very numbers of the joint, not ones that differ by rounding.
             entry.at = at;
@@ -119,16 +119,24 @@ fn meeting_point(
     rng: &mut ChaCha8Rng,
 ) -> (Ground, i32, Option<usize>) {
     let tick = rng.random_range(ticks);
+    let loops = tracks.domain.cycle.loops();
     // Some patches are met half-way through at the first frame.
-    let tick = if tick < EARLY_TICKS { tick - rng.random_range(0..lead.ticks) } else { tick };
-    if tick > 0 && rng.random_range(0..2) == 0 {
+    let tick = if loops {
+        tracks.fold(track, tick)
+    } else if tick < EARLY_TICKS {
+        tick - rng.random_range(0..lead.ticks)
+    } else {
+        tick
+    };
+    if (tick > 0 || loops) && rng.random_range(0..2) == 0 {
         let joint = tracks.index_at(track, tick);
         let port = tracks.port(track, joint);
-        if port.group == lead.entry_group && port.tick > 0 && port.tick < tracks.domain.horizon - 15 {
+        let inside = loops || (port.tick > 0 && port.tick < tracks.domain.horizon - 15);
+        if port.group == lead.entry_group && inside {
             return (port.at, port.tick, Some(joint));
         }
     }
-    let on_the_way = tracks.state_at(track, tick.max(0));
+    let on_the_way = tracks.state_at(track, if loops { tick } else { tick.max(0) });
     let aside = Vec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * JITTER;
     (on_the_way.then(Ground::new(aside, rng.random_range(-JITTER_TURN..JITTER_TURN))), tick, None)
 }
@@ -150,34 +158,46 @@ fn heir(tracks: &Tracks, role: u32, exit: Port, world_from_patch: Ground, clock:
     others.find(swaps).map_or(exit, |r| library.ports(r, world_from_patch, clock).1)
 }
 
-/// One of those who can be at `entry` in time and go on from `exit`: person, first and one past the last piece to rip.
+/// One of those who can be at `entry` in time and go on from `heir` after `exit`: person, how that person counts places
+/// and ticks, first and one past the last piece to rip.
 fn player(
     tracks: &Tracks,
     entry: &Port,
     exit: &Port,
+    heir: &Port,
     taken: impl Fn(TrackId) -> bool,
     near: &mut Vec<PieceId>,
     rng: &mut ChaCha8Rng,
-) -> Option<(TrackId, usize, usize)> {
-    let tick = (entry.tick - CAST_LEAD).clamp(0, tracks.domain.horizon - 1);
+) -> Option<(TrackId, Shift, usize, usize)> {
+    let tick = lead_tick(tracks, entry.tick - CAST_LEAD);
     tracks.occupancy.near(tick, entry.at.position, CAST_RADIUS, near);
     let fits = |&t: &TrackId| !taken(t) && fits_hands(tracks, t, entry.group, tick);
     let mut candidates: Vec<TrackId> = near.iter().map(|&id| tracks.owner(id)).filter(fits).collect();
     candidates.sort_unstable();
     while !candidates.is_empty() {
         let track = candidates.swap_remove(rng.random_range(0..candidates.len()));
-        let from = rip_from(tracks, track, entry);
-        if let Some((from, to)) = from.and_then(|f| Some((f, rip_to(tracks, track, entry, exit)?))) {
-            return Some((track, from, to));
+        let shift = tracks.shift_to(track, entry);
+        let (entry, heir) = (shift.port(*entry), shift.port(*heir));
+        if !tracks.spans(track, entry.tick, shift.port(*exit).tick) {
+            continue;
+        }
+        let from = rip_from(tracks, track, &entry);
+        if let Some((from, to)) = from.and_then(|f| Some((f, rip_to(tracks, track, &entry, &heir)?))) {
+            return Some((track, shift, from, to));
         }
     }
     None
 }
 
+/// A tick at which somebody can be looked for.
+fn lead_tick(tracks: &Tracks, tick: i32) -> i32 {
+    if tracks.domain.cycle.loops() { tick } else { tick.clamp(0, tracks.domain.horizon - 1) }
+}
+
 /// True if a person has as much in the hands at a tick as people of a pose group have: a box or nothing.
 fn fits_hands(tracks: &Tracks, track: TrackId, group: u32, tick: i32) -> bool {
     let library = tracks.library;
-    let piece = tracks.piece(tracks.tracks[track][tracks.index_at(track, tick.clamp(0, tracks.domain.horizon - 1))]);
+    let piece = tracks.piece(tracks.tracks[track][tracks.index_at(track, lead_tick(tracks, tick))]);
     library.laden[library.roles[piece.role as usize].entry_group as usize] == library.laden[group as usize]
 }
 
@@ -190,7 +210,7 @@ fn rip_from(tracks: &Tracks, track: TrackId, entry: &Port) -> Option<usize> {
             return best.1;
         }
         let ease = easy_closings(tracks.library, from, *entry);
-        if ease > best.0 && from.tick > 0 {
+        if ease > best.0 && (from.tick > 0 || tracks.domain.cycle.loops()) {
             best = (ease, Some(index));
         }
     }
@@ -201,7 +221,9 @@ fn rip_from(tracks: &Tracks, track: TrackId, entry: &Port) -> Option<usize> {
 fn rip_to(tracks: &Tracks, track: TrackId, entry: &Port, exit: &Port) -> Option<usize> {
     let count = tracks.tracks[track].len();
     let mut best = (0, None);
-    for index in tracks.index_before(track, exit.tick)..count {
+    // Where time comes round the end of the track is a port as any other.
+    let last = if tracks.domain.cycle.loops() { count + 1 } else { count };
+    for index in tracks.index_before(track, exit.tick)..last {
         let to = tracks.port(track, index);
         if to.tick - exit.tick > LONGEST_BRIDGE {
             break;
@@ -210,7 +232,7 @@ fn rip_to(tracks: &Tracks, track: TrackId, entry: &Port, exit: &Port) -> Option<
         if ease > best.0 {
             best = (ease, Some(index));
         }
-        if tracks.people_of(tracks.tracks[track][index]) > 1 {
+        if index < count && tracks.people_of(tracks.tracks[track][index]) > 1 {
             break;
         }
     }
@@ -299,6 +321,10 @@ fn futures(tracks: &Tracks, parts: &[Part]) -> Vec<usize> {
         if open { 0.0 } else { (parts[i].exit.at.position.distance(to.at.position) - 0.8 * left).abs() }
     };
     let mut order: Vec<usize> = (0..parts.len()).collect();
+    if tracks.domain.cycle.loops() {
+        // Everybody's future leads to where they began.
+        return order;
+    }
     for i in 0..order.len() {
         for j in i + 1..order.len() {
             if way(i, order[j]) + way(j, order[i]) < way(i, order[i]) + way(j, order[j]) {
@@ -317,10 +343,12 @@ fn lead_in(
     rng: &mut ChaCha8Rng,
 ) -> Option<Vec<PieceId>> {
     let from = draft.base.port(part.track, part.keep_before);
-    if part.entry.tick <= 0 || from == part.entry {
+    let loops = draft.base.domain.cycle.loops();
+    if (part.entry.tick <= 0 && !loops) || from == part.entry {
         return Some(vec![]);
     }
     match part.keep_before {
+        _ if loops => draft.search(from, Goal::Port(part.entry), company, taste, rng),
         0 => draft.search(part.entry, Goal::Since(0), company, taste, rng),
         _ => draft.search(from, Goal::Port(part.entry), company, taste, rng),
     }
@@ -336,6 +364,7 @@ fn lead_out(
 ) -> Option<Vec<PieceId>> {
     let (tracks, horizon) = (draft.base, draft.base.domain.horizon);
     let open = future.keep_after == tracks.tracks[future.track].len();
+    let open = open && !tracks.domain.cycle.loops();
     if open && part.exit.tick >= horizon {
         return Some(vec![]);
     }

@@ -36,26 +36,34 @@ pub(super) struct Fault {
 /// neighbours), in parallel.
 pub(super) fn faults(chains: Chains, played: &Performance, is_new: &[bool]) -> Vec<Fault> {
     let at_tick = |tick| {
-        let places = Places::at(tick, played.bodies.iter());
+        let places = Places::at(tick, played.bodies.iter(), chains.domain.torus);
         let mut pairs = in_the_way(chains, played, &places, tick);
         pairs.retain(|&(a, b)| is_new[a] || is_new[b]);
         pairs.extend(touching(chains, &played.bodies, &places, is_new, tick));
         pairs
     };
-    let per_tick: Vec<Vec<(TrackId, TrackId)>> = (0..chains.domain.horizon).into_par_iter().map(at_tick).collect();
+    let per_tick: Vec<Vec<(TrackId, TrackId)>> = chains.domain.frames().into_par_iter().map(at_tick).collect();
+    let first = chains.domain.frames().start;
     let mut open: BTreeSet<(TrackId, TrackId)> = BTreeSet::new();
     let mut faults = Vec::new();
     for (tick, pairs) in per_tick.into_iter().enumerate() {
         let now: BTreeSet<_> = pairs.into_iter().collect();
-        faults.extend(now.difference(&open).map(|&(a, b)| Fault { a, b, tick: tick as i32 }));
+        faults.extend(now.difference(&open).map(|&(a, b)| Fault { a, b, tick: first + tick as i32 }));
         open = now;
     }
     let alone = |(t, body): (TrackId, &Body)| {
-        let frame = first_unclean(body, chains.library, chains.domain, 0..body.root.len())?;
+        let frame = first_unclean(body, chains.library, chains.domain, tested(chains.domain, body))?;
         Some(Fault { a: t, b: t, tick: body.begin as i32 + frame as i32 })
     };
     faults.par_extend(played.bodies.par_iter().enumerate().filter(|(t, _)| is_new[*t]).filter_map(alone));
     faults
+}
+
+/// The frames of a body that are looked at, the one that is the first again included.
+fn tested(domain: &Domain, body: &Body) -> Range<usize> {
+    let frames = domain.frames();
+    let index = |tick: i32| (tick - body.begin as i32).max(0) as usize;
+    index(frames.start)..(index(frames.end) + 1).min(body.root.len())
 }
 
 /// The first of some frames on which a leg cannot do what it should, a joint turns or the hips move faster than in the
@@ -93,7 +101,7 @@ fn touching(chains: Chains, bodies: &[Body], places: &Places, is_new: &[bool], t
     places.pairs(is_new, figure, |(a, first), (b, second)| {
         let depth = first.depth_into(second);
         let pieces = || [a, b].map(|t| chains.piece_at(t, tick));
-        if depth > TOLERANCE && depth > TOLERANCE + captured_depth(chains.library, pieces(), tick) {
+        if depth > TOLERANCE && depth > TOLERANCE + captured_depth(chains.library, chains.domain, pieces(), tick) {
             pairs.push((a.min(b), a.max(b)));
         }
     });
@@ -102,12 +110,12 @@ fn touching(chains: Chains, bodies: &[Body], places: &Places, is_new: &[bool], t
 
 /// How deep two people who are in one patch at a tick are in each other in its capture at that moment, metres; 0 if they
 /// are in two. Between two captured frames the deeper of them.
-pub(super) fn captured_depth(library: &Library, pieces: [Option<&Piece>; 2], tick: i32) -> f32 {
+pub(super) fn captured_depth(library: &Library, domain: &Domain, pieces: [Option<&Piece>; 2], tick: i32) -> f32 {
     let [Some(a), Some(b)] = pieces else { return 0.0 };
     if a.instance != b.instance || a.instance == NO_INSTANCE {
         return 0.0;
     }
-    let clocks = [a, b].map(|piece| clock(library, piece, tick));
+    let clocks = [a, b].map(|piece| clock(library, piece, domain.cycle.fold(tick, piece.begin)));
     let (first, last) = (clocks[0].min(clocks[1]).floor() as u32, clocks[0].max(clocks[1]).ceil() as u32);
     (first..=last).map(|c| captured(library, a, c).depth_into(&captured(library, b, c))).fold(0.0, f32::max)
 }

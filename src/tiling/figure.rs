@@ -5,7 +5,7 @@ use std::cell::OnceCell;
 use glam::{Quat, Vec2, Vec3};
 
 use super::domain::{Domain, Spot};
-use crate::geom::Capsule;
+use crate::geom::{Capsule, Torus};
 use crate::motion::{Skeleton, body_capsules};
 use crate::refine::Body;
 
@@ -57,6 +57,22 @@ impl Figure {
         !domain.holds(Spot::ground(tick), self.center, self.radius) && !self.capsules.iter().all(free)
     }
 
+    /// The same body somewhere else.
+    pub fn moved(mut self, by: Vec2) -> Self {
+        let by3 = Vec3::new(by.x, 0.0, by.y);
+        for c in &mut self.capsules {
+            (c.a, c.b) = (c.a + by3, c.b + by3);
+        }
+        self.center += by;
+        self
+    }
+
+    /// The image of the body that is nearest to another one.
+    pub fn beside(self, other: &Self, torus: Torus) -> Self {
+        let by = torus.whole(other.center - self.center);
+        if by == Vec2::ZERO { self } else { self.moved(by) }
+    }
+
     /// Depth of the deepest pair of capsules, metres; 0 if none touch.
     pub fn depth_into(&self, other: &Self) -> f32 {
         if self.center.distance(other.center) >= self.radius + other.radius {
@@ -76,17 +92,22 @@ impl Figure {
     }
 }
 
-/// Where everybody's hips are at a tick, sorted along x, so that near ones are neighbours.
+/// Where everybody's hips are at a tick, sorted along x, so that near ones are neighbours. Where the ground repeats, all
+/// are in the region, and images of those who are near its border beyond it.
 pub(super) struct Places(Vec<(Vec2, usize)>);
 
 impl Places {
     /// Those who are there. O(people log people).
-    pub fn at<'b>(tick: i32, bodies: impl Iterator<Item = &'b Body>) -> Self {
+    pub fn at<'b>(tick: i32, bodies: impl Iterator<Item = &'b Body>, torus: Torus) -> Self {
         let place = |(person, body): (usize, &Body)| {
             let root = body.root[frame_at(body, tick)?];
-            Some((Vec2::new(root.x, root.z), person))
+            Some((torus.wrap(Vec2::new(root.x, root.z)), person))
         };
         let mut all: Vec<(Vec2, usize)> = bodies.enumerate().filter_map(place).collect();
+        if !torus.is_plane() {
+            let images = all.iter().flat_map(|&(p, person)| torus.images(p, TOUCHING_HIPS).map(move |q| (q, person)));
+            all = images.collect();
+        }
         all.sort_unstable_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.1.cmp(&b.1)));
         Self(all)
     }
@@ -107,11 +128,16 @@ impl Places {
         mut meet: impl FnMut((usize, &Figure), (usize, &Figure)),
     ) {
         let figures: Vec<OnceCell<Option<Figure>>> = self.0.iter().map(|_| OnceCell::new()).collect();
-        let figure = |i: usize| figures[i].get_or_init(|| figure(self.0[i].1)).as_ref();
+        let image = |(place, person): (Vec2, usize)| {
+            let figure = figure(person)?;
+            let by = place - figure.center;
+            Some(if by == Vec2::ZERO { figure } else { figure.moved(by) })
+        };
+        let figure = |i: usize| figures[i].get_or_init(|| image(self.0[i])).as_ref();
         for (i, &(here, a)) in self.0.iter().enumerate() {
             let reached = self.0[i + 1..].iter().take_while(|(there, _)| there.x - here.x <= TOUCHING_HIPS);
             for (k, &(there, b)) in reached.enumerate() {
-                if !(is_new[a] || is_new[b]) || here.distance_squared(there) > TOUCHING_HIPS * TOUCHING_HIPS {
+                if !(is_new[a] || is_new[b]) || a == b || here.distance_squared(there) > TOUCHING_HIPS * TOUCHING_HIPS {
                     continue;
                 }
                 if let (Some(first), Some(second)) = (figure(i), figure(i + 1 + k)) {

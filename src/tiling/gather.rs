@@ -9,12 +9,11 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::bridge::{Goal, NO_INSTANCE, Port, Taste};
-use super::domain::Spot;
+use super::domain::{Domain, Spot};
 use super::draft::Draft;
 use super::occupancy::PieceId;
 use super::passage::{Part, Passages, Site, Way, parts, put, shuffled};
 use super::piece::{Company, Rigid};
-use super::prefer::Stay;
 use super::tryout::is_clean;
 use crate::geom::Ground;
 
@@ -22,6 +21,8 @@ use crate::geom::Ground;
 const PLACES: usize = 200;
 /// Room that the ends of a patch must have to walls, metres.
 const WALL_ROOM: f32 = 0.4;
+/// Where time comes round, so many ticks are left for the way back to the first patch.
+const HOMEWARD: i32 = 120;
 /// Ticks of the first patch that are seen at least.
 const SEEN: i32 = 15;
 
@@ -52,6 +53,11 @@ impl Life {
     pub fn of(part: &Part, id: PieceId, instance: u32) -> Self {
         let company = Company { from: instance, to: instance };
         Self { pieces: vec![id], begin: part.entry, end: part.exit, company }
+    }
+
+    /// The tick up to which it may go on together: the end of time, or when it must be on the way to where it began.
+    fn latest(&self, domain: &Domain) -> i32 {
+        if domain.cycle.loops() { self.begin.tick + domain.cycle.ticks() - HOMEWARD } else { domain.horizon }
     }
 }
 
@@ -94,16 +100,16 @@ fn live(
     taste: Taste,
     rng: &mut ChaCha8Rng,
 ) -> Option<Vec<Life>> {
-    let horizon = draft.base.domain.horizon;
-    let mut together = time_together(&meeting.parts, horizon);
+    let domain = draft.base.domain;
+    let mut together = time_together(&meeting.parts, domain);
     let ids = draft.add_patch(meeting.parts.iter().map(|p| (p.role, p.entry)))?;
     meeting.instance = draft.piece(ids[0]).instance;
     let mut lives: Vec<Life> =
         meeting.parts.iter().zip(ids).map(|(part, id)| Life::of(part, id, meeting.instance)).collect();
     come_together(draft, passages, &meeting, &mut lives, rng)?;
-    while together < wish.together && lives.iter().all(|l| l.end.tick < horizon - SEEN) {
+    while together < wish.together && lives.iter().all(|l| l.end.tick < l.latest(domain) - SEEN) {
         let Some(next) = go_on(draft, passages, &meeting, &mut lives, rng) else { break };
-        together += time_together(&next.parts, horizon);
+        together += time_together(&next.parts, domain);
         meeting = next;
     }
     if together < wish.least {
@@ -120,8 +126,8 @@ fn live(
 }
 
 /// Ticks of a patch within the domain's time, on average over its people.
-fn time_together(parts: &[Part], horizon: i32) -> i32 {
-    let ticks = |p: &Part| p.exit.tick.clamp(0, horizon) - p.entry.tick.clamp(0, horizon);
+fn time_together(parts: &[Part], domain: &Domain) -> i32 {
+    let ticks = |p: &Part| domain.seen(p.entry.tick, p.exit.tick).len() as i32;
     parts.iter().map(ticks).sum::<i32>() / parts.len() as i32
 }
 
@@ -132,10 +138,10 @@ fn place(draft: &Draft, wish: Wish, rng: &mut ChaCha8Rng) -> Option<Meeting> {
         Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
     let world_from_patch = Ground::new(position, rng.random_range(-PI..PI));
     let longest = library.roles_of(wish.kind).map(|r| library.roles[r as usize].ticks).max()?;
-    let earliest = SEEN - longest;
-    let latest = (domain.horizon - SEEN - wish.together).max(earliest + 1);
-    let clock = rng.random_range(earliest..latest);
-    if !library.preference.is_wanted(wish.kind, Stay::new(world_from_patch, clock.max(0)), rng) {
+    let earliest = if domain.cycle.loops() { 0 } else { SEEN - longest };
+    let latest = if domain.cycle.loops() { domain.horizon } else { domain.horizon - SEEN - wish.together };
+    let clock = rng.random_range(earliest..latest.max(earliest + 1));
+    if !library.preference.is_wanted(wish.kind, domain.stay(world_from_patch, clock.max(0)), rng) {
         return None;
     }
     let parts = parts(library, wish.kind, world_from_patch, clock);
@@ -145,8 +151,7 @@ fn place(draft: &Draft, wish: Wish, rng: &mut ChaCha8Rng) -> Option<Meeting> {
 
 fn is_free(draft: &Draft, parts: &[Part]) -> bool {
     let (library, domain) = (draft.base.library, draft.base.domain);
-    let outside = |tick: i32| tick < 0 || tick > domain.horizon;
-    let room = |p: &Port| outside(p.tick) || domain.holds(Spot::ground(p.tick), p.at.position, WALL_ROOM);
+    let room = |p: &Port| domain.is_unseen(p.tick) || domain.holds(Spot::ground(p.tick), p.at.position, WALL_ROOM);
     let rigid = |p: &Part| Rigid::new(library, p.role, p.entry.at, p.entry.tick);
     let view = draft.view();
     parts.iter().all(|p| room(&p.entry) && room(&p.exit))
@@ -161,12 +166,14 @@ fn go_on(
     lives: &mut [Life],
     rng: &mut ChaCha8Rng,
 ) -> Option<Meeting> {
-    let library = draft.base.library;
+    let (library, domain) = (draft.base.library, draft.base.domain);
+    let latest = lives.iter().map(|l| l.latest(domain)).min()?;
     shuffled(passages.of(meeting.kind, Way::Stay), rng).into_iter().find_map(|passage| {
         let encore = passage.encore.expect("people go on");
         let parts = encore.parts(library, meeting.world_from_patch, meeting.clock);
-        let (kind, stay) = (encore.kind, Stay::new(parts[0].entry.at, parts[0].entry.tick));
-        if !library.preference.is_wanted(kind, stay, rng) || !is_free(draft, &parts) {
+        let (kind, stay) = (encore.kind, domain.stay(parts[0].entry.at, parts[0].entry.tick));
+        let too_late = domain.cycle.loops() && parts.iter().any(|p| p.exit.tick > latest);
+        if too_late || !library.preference.is_wanted(kind, stay, rng) || !is_free(draft, &parts) {
             return None;
         }
         let mark = draft.mark();
@@ -197,12 +204,13 @@ fn come_together(
     lives: &mut [Life],
     rng: &mut ChaCha8Rng,
 ) -> Option<()> {
-    let begins: Vec<i32> = lives.iter().map(|l| l.begin.tick).collect();
-    if begins.iter().all(|&tick| tick <= 0) {
+    let loops = draft.base.domain.cycle.loops();
+    let comes: Vec<bool> = lives.iter().map(|l| loops || l.begin.tick > 0).collect();
+    if !comes.contains(&true) {
         return Some(());
     }
     let ways = shuffled(passages.of(meeting.kind, Way::Come), rng).into_iter().find_map(|passage| {
-        put(draft, passage, meeting.site(NO_INSTANCE), |role, piece| begins[role] > 0 && piece.end > 0)
+        put(draft, passage, meeting.site(NO_INSTANCE), |role, piece| comes[role] && (loops || piece.end > 0))
     })?;
     for (life, way) in lives.iter_mut().zip(ways) {
         if let Some(&first) = way.first() {
@@ -222,12 +230,13 @@ fn part_ways(
     lives: &mut [Life],
     rng: &mut ChaCha8Rng,
 ) -> Option<()> {
-    let (ends, horizon): (Vec<i32>, i32) = (lives.iter().map(|l| l.end.tick).collect(), draft.base.domain.horizon);
-    if ends.iter().all(|&tick| tick >= horizon) {
+    let (loops, horizon) = (draft.base.domain.cycle.loops(), draft.base.domain.horizon);
+    let parts: Vec<bool> = lives.iter().map(|l| loops || l.end.tick < horizon).collect();
+    if !parts.contains(&true) {
         return Some(());
     }
     let ways = shuffled(passages.of(meeting.kind, Way::Part), rng).into_iter().find_map(|passage| {
-        put(draft, passage, meeting.site(NO_INSTANCE), |role, piece| ends[role] < horizon && piece.begin < horizon)
+        put(draft, passage, meeting.site(NO_INSTANCE), |role, piece| parts[role] && (loops || piece.begin < horizon))
     })?;
     for (life, way) in lives.iter_mut().zip(ways) {
         if let Some(&last) = way.last() {
@@ -241,7 +250,7 @@ fn part_ways(
 
 /// Leads somebody from the beginning of time to their first patch.
 pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
-    if life.begin.tick > 0 {
+    if life.begin.tick > 0 && !draft.base.domain.cycle.loops() {
         let company = Company { to: life.company.from, ..Company::NONE };
         let way = lead(draft, life.begin, Goal::Since(0), company, taste, rng)?;
         life.pieces.splice(..0, way);
@@ -249,10 +258,15 @@ pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut C
     Some(())
 }
 
-/// Leads somebody from their last patch to the end of time.
+/// Leads somebody from their last patch to the end of time, or round to their first one.
 pub(super) fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let horizon = draft.base.domain.horizon;
-    if life.end.tick < horizon {
+    if draft.base.domain.cycle.loops() {
+        let company = Company { from: life.company.to, to: life.company.from };
+        let mut tries = [Company::NONE, company].into_iter();
+        let way = tries.find_map(|company| draft.come_round(life.end, life.begin, company, taste, rng))?;
+        life.pieces.extend(way);
+    } else if life.end.tick < horizon {
         let company = Company { from: life.company.to, ..Company::NONE };
         life.pieces.extend(lead(draft, life.end, Goal::Until(horizon), company, taste, rng)?);
     }

@@ -28,11 +28,14 @@ pub(super) fn hurdle(draft: &mut Draft, jumpers: &[u32], taste: Taste, rng: &mut
     let (library, horizon) = (draft.base.library, draft.base.domain.horizon);
     let (entry, exit) = (library.entry_of(&jump), library.exit_of(&jump));
     let id = draft.add(jump);
-    let mut pieces =
-        if entry.tick > 0 { draft.search(entry, Goal::Since(0), Company::NONE, taste, rng)? } else { vec![] };
+    let mut pieces = if entry.tick > 0 && !draft.base.domain.cycle.loops() {
+        draft.search(entry, Goal::Since(0), Company::NONE, taste, rng)?
+    } else {
+        vec![]
+    };
     pieces.push(id);
-    if exit.tick < horizon {
-        pieces.extend(draft.search(exit, Goal::Until(horizon), Company::NONE, taste, rng)?);
+    if exit.tick < horizon || draft.base.domain.cycle.loops() {
+        pieces.extend(draft.lead_to_the_end(entry, exit, taste, rng)?);
     }
     draft.push_track(pieces);
     Some(())

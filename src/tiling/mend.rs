@@ -52,6 +52,7 @@ pub(super) fn dissolve(draft: &mut Draft, fault: Fault, taste: Taste, rng: &mut 
 fn near(tracks: &Tracks, track: TrackId, tick: i32, reach: usize, wanted: impl Fn(usize) -> bool) -> Option<usize> {
     let pieces = &tracks.tracks[track];
     let at = tracks.index_at(track, tick).min(pieces.len() - 1);
+    let tick = tracks.fold(track, tick);
     let distance = |i: &usize| {
         let p = tracks.piece(pieces[*i]);
         (p.begin - tick).max(tick - p.end).max(0)

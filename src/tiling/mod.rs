@@ -28,6 +28,7 @@ mod piece;
 mod plan;
 mod prefer;
 mod rehearsal;
+mod repeat;
 mod scene;
 mod seed;
 mod sketch;

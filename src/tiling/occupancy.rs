@@ -7,6 +7,7 @@ use glam::Vec2;
 use super::domain::Domain;
 use super::library::Library;
 use super::piece::Piece;
+use crate::geom::{Cycle, Torus};
 
 /// Cell size of the grid in metres.
 const CELL: f32 = 1.0;
@@ -45,14 +46,21 @@ pub(super) struct Occupancy {
     columns: i32,
     rows: i32,
     origin: Vec2,
+    per_metre: Vec2,
+    torus: Torus,
+    cycle: Cycle,
     max_reach: f32,
 }
 
 impl Occupancy {
     /// An empty one.
     pub fn new(domain: &Domain, library: &Library) -> Self {
-        let size = ((domain.max - domain.min) / CELL).ceil();
-        let (columns, rows) = (size.x as i32 + 1, size.y as i32 + 1);
+        let cells = (domain.max - domain.min) / CELL;
+        // A whole number of cells, a little larger ones, where the domain repeats; else one more than is needed.
+        let repeats = domain.torus.period().cmpgt(Vec2::ZERO);
+        let count = Vec2::select(repeats, cells.floor(), cells.ceil() + 1.0);
+        let per_metre = Vec2::select(repeats, count / (domain.max - domain.min), Vec2::splat(1.0 / CELL));
+        let (columns, rows) = (count.x as i32, count.y as i32);
         Self {
             pieces: vec![],
             free: vec![],
@@ -60,6 +68,9 @@ impl Occupancy {
             columns,
             rows,
             origin: domain.min,
+            per_metre,
+            torus: domain.torus,
+            cycle: domain.cycle,
             max_reach: library.max_reach,
         }
     }
@@ -67,7 +78,9 @@ impl Occupancy {
     /// One in which nothing is ever placed.
     pub fn none() -> Self {
         let (columns, rows, origin, max_reach) = (0, 0, Vec2::ZERO, 0.0);
-        Self { pieces: vec![], free: vec![], cells: vec![], columns, rows, origin, max_reach }
+        let (per_metre, torus, cycle) = (Vec2::ONE, Torus::default(), Cycle::default());
+        let (pieces, free, cells) = (vec![], vec![], vec![]);
+        Self { pieces, free, cells, columns, rows, origin, per_metre, max_reach, torus, cycle }
     }
 
     /// A placed piece.
@@ -136,18 +149,19 @@ impl Occupancy {
 
     fn cell_of(&self, tick: i32, position: Vec2) -> usize {
         let (x, z) = self.column_and_row(position);
-        let (x, z) = (x.clamp(0, self.columns - 1), z.clamp(0, self.rows - 1));
-        ((tick * self.rows + z) * self.columns + x) as usize
+        let period = self.torus.period();
+        let (x, z) = (inside(x, self.columns, period.x), inside(z, self.rows, period.y));
+        ((self.cycle.slot(tick) * self.rows + z) * self.columns + x) as usize
     }
 
     /// May be outside the grid. A cast rounds towards zero, which is down once the number is above it; calls of `floor`
     /// would cost more than all the rest.
     fn column_and_row(&self, position: Vec2) -> (i32, i32) {
-        let c = (position - self.origin) / CELL + FAR;
+        let c = (position - self.origin) * self.per_metre + FAR;
         (c.x as i32 - FAR as i32, c.y as i32 - FAR as i32)
     }
 
-    /// Calls `see` with each body at a tick that may reach to within `reach` of `position`, or with `None` for a cell that is
+    /// Calls `see` with each body at a tick of the first lap that may reach to within `reach` of `position`, or with `None` for a cell that is
     /// full, until it breaks.
     #[inline]
     pub fn visit(
@@ -159,7 +173,9 @@ impl Occupancy {
     ) -> ControlFlow<()> {
         let (columns, rows) = self.cells_within(position, reach + self.max_reach);
         for z in rows {
+            let z = around(z, self.rows);
             for x in columns.clone() {
+                let x = around(x, self.columns);
                 let cell = &self.cells[((tick * self.rows + z) * self.columns + x) as usize];
                 if cell.count as usize == CELL_BODIES {
                     see(None)?;
@@ -174,20 +190,47 @@ impl Occupancy {
 
     fn cells_within(&self, position: Vec2, distance: f32) -> (RangeInclusive<i32>, RangeInclusive<i32>) {
         let (low, high) = (self.column_and_row(position - distance), self.column_and_row(position + distance));
-        (low.0.max(0)..=high.0.min(self.columns - 1), low.1.max(0)..=high.1.min(self.rows - 1))
+        let period = self.torus.period();
+        (span(low.0, high.0, self.columns, period.x), span(low.1, high.1, self.rows, period.y))
     }
 
     /// Ids of the pieces whose people's path points lie within `distance` of `position` at `tick`, in no particular order.
     pub fn near(&self, tick: i32, position: Vec2, distance: f32, out: &mut Vec<PieceId>) {
         out.clear();
         let (columns, rows) = self.cells_within(position, distance);
+        let (slot, is_played) = (self.cycle.slot(tick), |id: &PieceId| {
+            let piece = self.piece(*id);
+            piece.is_played(self.cycle.fold(tick, piece.shown_from))
+        });
         for z in rows {
+            let z = around(z, self.rows);
             for x in columns.clone() {
-                let cell = &self.cells[((tick * self.rows + z) * self.columns + x) as usize];
-                let near = |b: &&Shown| b.position.distance_squared(position) < distance * distance;
+                let cell = &self.cells[((slot * self.rows + z) * self.columns + around(x, self.columns)) as usize];
+                let near =
+                    |b: &&Shown| self.torus.nearest(b.position - position).length_squared() < distance * distance;
                 let near = cell.bodies[..cell.count as usize].iter().filter(near).map(|b| b.id);
-                out.extend(near.filter(|&id| self.piece(id).is_played(tick)));
+                out.extend(near.filter(is_played));
             }
         }
     }
+}
+
+/// A cell that exists, along one axis of so many: the same one where the domain repeats, else the nearest.
+fn inside(at: i32, count: i32, period: f32) -> i32 {
+    if period > 0.0 { at.rem_euclid(count) } else { at.clamp(0, count - 1) }
+}
+
+/// Cells along one axis, none of them twice. Where the domain repeats some may lie beyond the last: see [`around`].
+fn span(low: i32, high: i32, count: i32, period: f32) -> RangeInclusive<i32> {
+    if period > 0.0 {
+        let first = low.rem_euclid(count);
+        return first..=first + (high - low).min(count - 1);
+    }
+    low.max(0)..=high.min(count - 1)
+}
+
+/// A cell of a span that lies beyond the last, from the first one on.
+#[inline]
+fn around(at: i32, count: i32) -> i32 {
+    if at < count { at } else { at - count }
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::bridge::NO_INSTANCE;
+use super::bridge::{NO_INSTANCE, Port};
 use super::domain::Domain;
 use super::footprint::{DISCS, Footprint, Lifts};
 use super::library::{Library, Role};
@@ -44,10 +44,31 @@ impl Ties {
         [self.instance, from, only(tick >= self.end - PARTING, self.company.to)]
     }
 
-    /// True if two people are in one patch at a tick, or as good as.
-    pub fn join(self, other: Self, tick: i32) -> bool {
-        let theirs = other.at(tick);
+    /// True if two people are in one patch at a moment, or as good as; each counts ticks in laps of their own.
+    pub fn join(self, tick: i32, other: Self, their_tick: i32) -> bool {
+        let theirs = other.at(their_tick);
         self.at(tick).into_iter().any(|i| i != NO_INSTANCE && theirs.contains(&i))
+    }
+}
+
+/// From one person's way of counting places and ticks to another's: whole periods and laps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Shift {
+    /// Metres.
+    pub place: Vec2,
+    /// Ticks.
+    pub ticks: i32,
+}
+
+impl Shift {
+    /// The same place and heading.
+    pub fn ground(self, at: Ground) -> Ground {
+        Ground::new(at.position + self.place, at.heading)
+    }
+
+    /// The same port.
+    pub fn port(self, port: Port) -> Port {
+        Port { at: self.ground(port.at), tick: port.tick + self.ticks, ..port }
     }
 }
 
@@ -58,6 +79,14 @@ pub(super) struct Body {
     turn: Turn,
     pub reach: f32,
     frame: u32,
+}
+
+impl Body {
+    /// The same body somewhere else.
+    #[inline]
+    pub fn moved(self, by: Vec2) -> Self {
+        Self { position: self.position + by, ..self }
+    }
 }
 
 /// One role of an instance, placed: from tick `begin` to tick `end`, along `path` (world, one sample per source frame).
@@ -91,9 +120,10 @@ impl Piece {
             points: source.path.points.iter().map(|&p| rigid.place(p)).collect(),
             headings: source.path.headings.iter().map(|h| h + from.heading).collect(),
         };
-        let bodies = rigid.ticks(domain).map(|tick| rigid.body(tick)).collect();
-        let company = Company::NONE;
-        let mut piece = Self { role, instance, company, begin, end, path, shown_from: begin.max(0), bodies };
+        let ticks = rigid.ticks(domain);
+        let (shown_from, company) = (ticks.start, Company::NONE);
+        let bodies = ticks.map(|tick| rigid.body(tick)).collect();
+        let mut piece = Self { role, instance, company, begin, end, path, shown_from, bodies };
         piece.lay_boxes(source, domain.horizon);
         piece
     }
@@ -111,7 +141,9 @@ impl Piece {
         let source = &library.roles[role as usize];
         let last = path.len() - 1;
         let step = last as f32 / (end - begin) as f32;
-        let bodies = (begin.max(0)..end.min(domain.horizon)).map(|tick| {
+        let ticks = domain.seen(begin, end);
+        let (shown_from, company) = (ticks.start, Company::NONE);
+        let bodies = ticks.map(|tick| {
             let at = (tick - begin) as f32 * step;
             let i = (at as usize).min(last - 1);
             let t = at - i as f32;
@@ -124,17 +156,15 @@ impl Piece {
             }
         });
         let bodies = bodies.collect();
-        let company = Company::NONE;
-        let mut piece = Self { role, instance, company, begin, end, path, shown_from: begin.max(0), bodies };
+        let mut piece = Self { role, instance, company, begin, end, path, shown_from, bodies };
         piece.lay_boxes(source, domain.horizon);
         piece
     }
 
     /// The same piece somewhere else and at another time, if it leaves no boxes: `by` and then as much later.
     pub fn moved(&self, domain: &Domain, by: Ground, ticks: i32) -> Self {
-        let turn = by.turn();
-        let shown_from = self.shown_from + ticks;
-        let bodies = self.bodies.iter().zip(shown_from..domain.horizon).filter(|(_, tick)| *tick >= 0);
+        let (turn, seen) = (by.turn(), domain.seen(self.begin + ticks, self.end + ticks));
+        let bodies = self.bodies.iter().zip(self.shown_from + ticks..).filter(|(_, tick)| seen.contains(tick));
         let bodies = bodies.map(|(b, _)| Body { position: by.apply(b.position), turn: turn.then(b.turn), ..*b });
         Self {
             begin: self.begin + ticks,
@@ -143,7 +173,7 @@ impl Piece {
                 points: self.path.points.iter().map(|&p| by.apply(p)).collect(),
                 headings: self.path.headings.iter().map(|h| h + by.heading).collect(),
             },
-            shown_from: shown_from.max(0),
+            shown_from: seen.start,
             bodies: bodies.collect(),
             ..*self
         }
@@ -163,6 +193,16 @@ impl Piece {
             self.bodies.splice(..0, before);
             self.shown_from = 0;
         }
+    }
+
+    /// The same piece some laps later or earlier, a whole number of periods away.
+    pub fn shifted(mut self, by: Shift) -> Self {
+        self.begin += by.ticks;
+        self.end += by.ticks;
+        self.shown_from += by.ticks;
+        self.path.points.iter_mut().for_each(|p| *p += by.place);
+        self.bodies.iter_mut().for_each(|b| b.position += by.place);
+        self
     }
 
     /// State at the entry.
@@ -242,7 +282,7 @@ impl<'a> Rigid<'a> {
 
     /// The ticks that it occupies.
     pub fn ticks(&self, domain: &Domain) -> std::ops::Range<i32> {
-        self.begin.max(0)..(self.begin + self.source.ticks).min(domain.horizon)
+        domain.seen(self.begin, self.begin + self.source.ticks)
     }
 
     /// The body at a tick that it occupies.

@@ -33,7 +33,7 @@ impl Rehearsal {
         let uses: Vec<_> =
             is_new.iter().enumerate().map(|(t, &new)| if new { segments_of(chains, t) } else { vec![] }).collect();
         let people: Vec<Vec<Segment>> = uses.iter().map(|uses| segments(uses)).collect();
-        refine_some(&people, &who, last_frame(chains), &mut self.played);
+        refine_some(&people, &who, chains.domain.last_frame(), chains.domain.torus, &mut self.played);
         self.faults.retain(|f| !is_new[f.a] && !is_new[f.b]);
         self.faults.extend(faults(chains, &self.played, &is_new));
         self.version = tracks.version();
@@ -44,11 +44,7 @@ impl Rehearsal {
 pub(super) fn perform(chains: Chains) -> Performance {
     let uses: Vec<_> = (0..chains.lists.len()).map(|t| segments_of(chains, t)).collect();
     let people: Vec<Vec<Segment>> = uses.iter().map(|uses| segments(uses)).collect();
-    refine_all(&people, last_frame(chains))
-}
-
-fn last_frame(chains: Chains) -> u32 {
-    chains.domain.horizon as u32 - 1
+    refine_all(&people, chains.domain.last_frame(), chains.domain.torus)
 }
 
 /// A person's fragments as refinement wants them.

@@ -4,11 +4,11 @@ use glam::Vec2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::bridge::{Goal, NO_INSTANCE, STANDING_SPEED, Taste};
+use super::bridge::{NO_INSTANCE, STANDING_SPEED, Taste};
 use super::domain::Spot;
 use super::draft::Draft;
 use super::library::{Library, Move};
-use super::piece::{Company, Piece};
+use super::piece::Piece;
 use super::prefer::Stay;
 use super::tryout::is_clean;
 use crate::geom::Ground;
@@ -20,29 +20,30 @@ const PLACES: usize = 20;
 /// or by taking one up, if so wished.
 pub(super) fn seed_person(draft: &mut Draft, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let first = (0..PLACES).find_map(|_| first_piece(draft, laden, taste, rng))?;
-    let exit = draft.base.library.exit_of(&first);
+    let (entry, exit) = (draft.base.library.entry_of(&first), draft.base.library.exit_of(&first));
     let mut pieces = vec![draft.add(first)];
-    pieces.extend(draft.search(exit, Goal::Until(draft.base.domain.horizon), Company::NONE, taste, rng)?);
+    pieces.extend(draft.lead_to_the_end(entry, exit, taste, rng)?);
     draft.push_track(pieces);
     is_clean(draft).then_some(())
 }
 
-/// A free patch of one person that is going on at tick 0.
+/// A free patch of one person that is going on at tick 0, or at any where time comes round.
 fn first_piece(draft: &Draft, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Piece> {
     let (library, domain) = (draft.base.library, draft.base.domain);
     let role = first_role(library, laden, taste, rng);
     let place = Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
     let heading = rng.random_range(-std::f32::consts::PI..std::f32::consts::PI);
     let lead = rng.random_range(0..library.roles[role as usize].ticks);
-    let stay = Stay::new(Ground::new(place, heading), 0);
+    let tick = if domain.cycle.loops() { rng.random_range(0..domain.horizon) } else { 0 };
+    let stay = Stay::new(Ground::new(place, heading), tick);
     let wanted = library.preference.is_wanted(library.roles[role as usize].kind, stay, rng);
-    if !wanted || !domain.holds(Spot::ground(0), place, 0.35) {
+    if !wanted || !domain.holds(Spot::ground(tick), place, 0.35) {
         return None;
     }
-    // The place is where the person is at tick 0, somewhere inside the first patch.
+    // The place is where the person is at that tick, somewhere inside the first patch.
     let entry_from_start = library.roles[role as usize].path.at(lead as usize).inverse();
     let start = Ground::new(place, heading).then(entry_from_start);
-    let first = Piece::rigid(library, domain, role, NO_INSTANCE, start, -lead);
+    let first = Piece::rigid(library, domain, role, NO_INSTANCE, start, tick - lead);
     draft.view().is_free(&first).then_some(first)
 }
 

@@ -2,6 +2,7 @@
 
 use super::occupancy::{PieceId, Shown};
 use super::piece::Piece;
+use crate::geom::Cycle;
 
 /// Ids of pieces that are only sketched begin here.
 const SKETCHED: PieceId = 1 << 31;
@@ -11,8 +12,9 @@ const SKETCHED: PieceId = 1 << 31;
 pub(super) struct Sketch {
     hidden: Vec<PieceId>,
     pieces: Vec<Piece>,
-    /// The bodies of `pieces` by tick.
+    /// The bodies of `pieces` by tick of the first lap.
     shown: Vec<Vec<Shown>>,
+    cycle: Cycle,
 }
 
 /// How far a sketch was at some moment.
@@ -24,7 +26,14 @@ pub(super) struct Mark {
 
 impl Sketch {
     /// One that changes nothing.
-    pub const EMPTY: &'static Self = &Self { hidden: Vec::new(), pieces: Vec::new(), shown: Vec::new() };
+    pub const EMPTY: &'static Self =
+        &Self { hidden: Vec::new(), pieces: Vec::new(), shown: Vec::new(), cycle: Cycle::NEVER };
+
+    /// Forgets everything and begins anew where time comes round like this.
+    pub fn begin(&mut self, cycle: Cycle) {
+        self.take();
+        self.cycle = cycle;
+    }
 
     /// True for ids of pieces that are in no tiling yet.
     pub fn is_sketched(id: PieceId) -> bool {
@@ -46,7 +55,7 @@ impl Sketch {
         self.hidden.contains(&id)
     }
 
-    /// Sketched bodies at a tick.
+    /// Sketched bodies at a tick of the first lap.
     pub fn at(&self, tick: i32) -> &[Shown] {
         self.shown.get(tick as usize).map_or(&[], Vec::as_slice)
     }
@@ -59,12 +68,12 @@ impl Sketch {
     /// Puts a piece in.
     pub fn add(&mut self, piece: Piece) -> PieceId {
         let id = SKETCHED + self.pieces.len() as PieceId;
-        let end = piece.shown_from as usize + piece.bodies.len();
-        if self.shown.len() < end {
-            self.shown.resize_with(end, Vec::new);
-        }
         for (tick, body) in (piece.shown_from..).zip(&piece.bodies) {
-            self.shown[tick as usize].push(Shown { id, position: body.position, reach: body.reach });
+            let slot = self.cycle.slot(tick) as usize;
+            if self.shown.len() <= slot {
+                self.shown.resize_with(slot + 1, Vec::new);
+            }
+            self.shown[slot].push(Shown { id, position: body.position, reach: body.reach });
         }
         self.pieces.push(piece);
         id
@@ -93,7 +102,9 @@ impl Sketch {
 
     /// Takes out the bodies of the piece that was put in last.
     fn unshow(&mut self, piece: &Piece) {
-        let from = piece.shown_from as usize;
-        self.shown[from..from + piece.bodies.len()].iter_mut().for_each(|bodies| bodies.truncate(bodies.len() - 1));
+        let ticks = (piece.shown_from..).take(piece.bodies.len());
+        for tick in ticks {
+            self.shown[self.cycle.slot(tick) as usize].pop();
+        }
     }
 }

@@ -1,15 +1,17 @@
 //! The state of the engine: every person is a track of pieces from the first tick to the last. It is a perfect tiling
 //! after every change, because changes are proposed whole (see [`Draft`](super::draft::Draft)) and taken or left.
 
+use glam::Vec2;
+
 use super::bake::Chains;
 use super::bridge::{NO_INSTANCE, Port};
 use super::domain::Domain;
 use super::library::Library;
 use super::occupancy::{Occupancy, PieceId};
-use super::piece::Piece;
+use super::piece::{Piece, Shift};
 use super::sketch::Sketch;
 use super::view::View;
-use crate::geom::Ground;
+use crate::geom::{Ground, Torus};
 
 /// Index of a person.
 pub(super) type TrackId = usize;
@@ -117,11 +119,15 @@ impl<'a> Tracks<'a> {
 
     /// The instance of several people that ends where piece `index` of a track begins.
     pub fn company_before(&self, track: TrackId, index: usize) -> u32 {
-        index.checked_sub(1).map_or(NO_INSTANCE, |before| self.company_after(track, before))
+        match (index.checked_sub(1), self.domain.cycle.loops()) {
+            (None, false) => NO_INSTANCE,
+            (before, _) => self.company_after(track, before.unwrap_or(self.tracks[track].len() - 1)),
+        }
     }
 
     /// The instance of several people that piece `index` of a track is of.
     pub fn company_after(&self, track: TrackId, index: usize) -> u32 {
+        let index = if self.domain.cycle.loops() { index % self.tracks[track].len() } else { index };
         let piece = self.tracks[track].get(index).filter(|&&id| self.people_of(id) > 1);
         piece.map_or(NO_INSTANCE, |&id| self.piece(id).instance)
     }
@@ -244,6 +250,7 @@ impl<'a> Tracks<'a> {
 
     /// Index of the piece a track is in at `tick`.
     pub fn index_at(&self, track: TrackId, tick: i32) -> usize {
+        let tick = self.fold(track, tick);
         self.tracks[track].partition_point(|&id| self.piece(id).end <= tick)
     }
 
@@ -254,7 +261,49 @@ impl<'a> Tracks<'a> {
 
     /// Place and heading of a person at a tick within the domain's time.
     pub fn state_at(&self, track: TrackId, tick: i32) -> Ground {
-        self.piece(self.tracks[track][self.index_at(track, tick)]).state(tick)
+        self.piece(self.tracks[track][self.index_at(track, tick)]).state(self.fold(track, tick))
+    }
+
+    /// A tick as a person counts them: from when their first piece begins, where time comes round.
+    pub fn fold(&self, track: TrackId, tick: i32) -> i32 {
+        self.domain.cycle.fold(tick, self.piece(self.tracks[track][0]).begin)
+    }
+
+    /// What a port is for a person who is near it.
+    pub fn shift_to(&self, track: TrackId, port: &Port) -> Shift {
+        let tick = self.fold(track, port.tick);
+        let near = |torus: Torus| torus.whole(self.state_at(track, tick).position - port.at.position);
+        let place = if self.domain.torus.is_plane() { Vec2::ZERO } else { near(self.domain.torus) };
+        Shift { place, ticks: tick - port.tick }
+    }
+
+    /// True if a person's loop can take two moments, counted as the person does, without being cut between them.
+    pub fn spans(&self, track: TrackId, begin: i32, end: i32) -> bool {
+        let cycle = self.domain.cycle;
+        !cycle.loops() || (self.port(track, 0).tick < begin && end <= self.port(track, 0).tick + cycle.ticks())
+    }
+
+    /// Cuts a person's loop open farthest from a tick, so that changes about it find it whole.
+    pub fn cut_away_from(&mut self, track: TrackId, tick: i32) {
+        let lap = self.domain.cycle.ticks();
+        if lap == 0 {
+            return;
+        }
+        let begin = self.port(track, 0);
+        let count = self.index_before(track, self.fold(track, tick + lap / 2));
+        let end = self.port(track, self.tracks[track].len());
+        let place = self.domain.torus.whole(end.at.position - begin.at.position);
+        // Nobody's ticks grow without end.
+        let (moved, by) = match begin.tick < 0 {
+            true => (0..count, Shift { place, ticks: lap }),
+            false => (count..self.tracks[track].len(), Shift { place: -place, ticks: -lap }),
+        };
+        for k in moved {
+            let id = self.tracks[track][k];
+            self.occupancy.hide(id);
+            self.occupancy.replace(id, self.piece(id).clone().shifted(by));
+        }
+        self.tracks[track].rotate_left(count);
     }
 
     /// Index of the piece of a track that is in an instance.

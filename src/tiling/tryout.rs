@@ -4,9 +4,11 @@
 use std::ops::Range;
 
 use super::bake::uses;
+use super::domain::Domain;
 use super::draft::Draft;
 use super::faults::{captured_depth, first_unclean};
 use super::figure::{Figure, TOLERANCE, frame_at};
+use super::library::Library;
 use super::occupancy::PieceId;
 use super::piece::Piece;
 use super::rehearsal::segments;
@@ -37,8 +39,12 @@ impl<'d> Turn<'d> {
         let first = new.next()?;
         let last = new.next_back().unwrap_or(first);
         let ticks = first.begin - BLEND_TICKS..last.end + BLEND_TICKS;
+        let pieces = track.iter().map(|&id| draft.piece(id));
+        if draft.base.domain.cycle.loops() {
+            return Some(Self { pieces: pieces.collect(), ticks });
+        }
         let is_near = |p: &&Piece| p.end > ticks.start - LEAD_TICKS && p.begin < ticks.end + LEAD_TICKS;
-        Some(Self { pieces: track.iter().map(|&id| draft.piece(id)).filter(is_near).collect(), ticks })
+        Some(Self { pieces: pieces.filter(is_near).collect(), ticks })
     }
 
     fn piece_at(&self, tick: i32) -> Option<&'d Piece> {
@@ -46,19 +52,27 @@ impl<'d> Turn<'d> {
     }
 }
 
-/// True if everybody in a draft moves as people can and no two of them run into each other. O(new ticks x joints).
+/// True if everybody in a draft moves as people can and no two of them run into each other. Where time comes round, each
+/// person counts ticks from somewhere else; there only the former is told. O(new ticks x joints).
 pub(super) fn is_clean(draft: &Draft) -> bool {
     let (library, domain) = (draft.base.library, draft.base.domain);
     let turns: Vec<Turn> = tracks(draft).filter_map(|track| Turn::of(draft, track)).collect();
-    let chains: Vec<_> = turns.iter().map(|t| uses(library, domain.horizon, t.pieces.iter().copied())).collect();
+    let chains: Vec<_> = turns.iter().map(|t| uses(library, domain, t.pieces.iter().copied())).collect();
     let people: Vec<_> = chains.iter().map(|chain| segments(chain)).collect();
-    let bodies = refine_all(&people, domain.horizon as u32 - 1).bodies;
-    let alone = |(turn, body): (&Turn, &Body)| {
-        let frame = |tick: i32| (tick - body.begin as i32).clamp(0, body.root.len() as i32) as usize;
-        first_unclean(body, library, domain, frame(turn.ticks.start)..frame(turn.ticks.end)).is_none()
-    };
-    turns.iter().zip(&bodies).all(alone)
-        && (0..turns.len()).all(|i| (0..i).all(|j| are_apart(draft, [&turns[i], &turns[j]], [&bodies[i], &bodies[j]])))
+    let bodies = refine_all(&people, domain.last_frame(), domain.torus).bodies;
+    turns.iter().zip(&bodies).all(|(turn, body)| moves_cleanly(library, domain, turn, body))
+        && (domain.cycle.loops() || all_are_apart(draft, &turns, &bodies))
+}
+
+fn moves_cleanly(library: &Library, domain: &Domain, turn: &Turn, body: &Body) -> bool {
+    // Where time comes round, in the second lap or right before it.
+    let lap = domain.cycle.fold(turn.ticks.start, domain.frames().start) - turn.ticks.start;
+    let frame = |tick: i32| (tick + lap - body.begin as i32).clamp(0, body.root.len() as i32) as usize;
+    first_unclean(body, library, domain, frame(turn.ticks.start)..frame(turn.ticks.end)).is_none()
+}
+
+fn all_are_apart(draft: &Draft, turns: &[Turn], bodies: &[Body]) -> bool {
+    (0..turns.len()).all(|i| (0..i).all(|j| are_apart(draft, [&turns[i], &turns[j]], [&bodies[i], &bodies[j]])))
 }
 
 /// All pieces of those who change.
@@ -79,6 +93,6 @@ fn are_apart(draft: &Draft, turns: [&Turn; 2], bodies: [&Body; 2]) -> bool {
         let [a, b] = bodies.map(|body| Figure::of(body, canonical(), tick).expect("near, so there"));
         let depth = a.depth_into(&b);
         let pieces = turns.map(|t| t.piece_at(tick));
-        depth <= TOLERANCE || depth <= TOLERANCE + captured_depth(draft.base.library, pieces, tick)
+        depth <= TOLERANCE || depth <= TOLERANCE + captured_depth(draft.base.library, draft.base.domain, pieces, tick)
     })
 }

@@ -110,26 +110,30 @@ impl<'a> View<'a> {
         body: &Body,
         met: &mut impl FnMut(Option<PieceId>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
+        let (torus, cycle) = (self.domain.torus, self.domain.cycle);
         let mut discs = None;
         let mut overlaps = |shown: &Shown| {
-            let apart = body.reach + shown.reach;
-            if body.position.distance_squared(shown.position) >= apart * apart || self.sketch.hides(shown.id) {
+            let (apart, away) = (body.reach + shown.reach, body.position - shown.position);
+            let whole = torus.whole(away);
+            if (away - whole).length_squared() >= apart * apart || self.sketch.hides(shown.id) {
                 return false;
             }
             let other = self.piece(shown.id);
-            if player.ties.join(other.ties(), tick) {
+            let their_tick = cycle.fold(tick, other.shown_from);
+            if player.ties.join(tick, other.ties(), their_tick) {
                 return false;
             }
-            let theirs = other.body(tick).expect("shown at this tick");
+            let theirs = other.body(their_tick).expect("shown at this tick");
             let own = discs.get_or_insert_with(|| player.discs(body));
-            overlap(own, &world_discs(theirs, footprint(self.library, other.role, theirs)))
+            overlap(own, &world_discs(&theirs.moved(whole), footprint(self.library, other.role, theirs)))
         };
-        for shown in self.sketch.at(tick) {
+        let slot = cycle.slot(tick);
+        for shown in self.sketch.at(slot) {
             if overlaps(shown) {
                 met(Some(shown.id))?;
             }
         }
-        self.occupancy.visit(tick, body.position, body.reach, &mut |shown| match shown {
+        self.occupancy.visit(slot, body.position, body.reach, &mut |shown| match shown {
             None => met(None),
             Some(shown) if overlaps(shown) => met(Some(shown.id)),
             Some(_) => ControlFlow::Continue(()),

@@ -3,6 +3,7 @@
 import "@fontsource-variable/inter/wght.css";
 import "./style.css";
 import type { Crowd } from "./crowd/model";
+import { repeatsInSpace } from "./crowd/tiles";
 import { debugHandle } from "./debug";
 import { Picture } from "./draw/picture";
 import { loadReport, loadShown } from "./load";
@@ -31,6 +32,7 @@ store.set("view", parameters.view);
 store.set("color", parameters.color);
 store.set("outlines", parameters.outlines);
 store.set("bodies", parameters.bodies);
+store.set("tiles", parameters.tiles);
 
 const player = new Player(store);
 installMessage(page, store);
@@ -40,6 +42,7 @@ installKeys(store, player, {
   color: () => store.set("color", after(COLOR_MODES, store.get("color"))),
   outlines: () => store.set("outlines", after(OUTLINES, store.get("outlines"))),
   kind: (step) => stepKind(store, step),
+  tiles: () => store.set("tiles", repeatsInSpace(store.get("crowd")) && !store.get("tiles")),
 });
 
 const picture = openPicture();
@@ -105,6 +108,7 @@ function openCrowd(crowd: Crowd, shown: Picture): void {
   installInspector(page, store, player);
   shown.show(crowd);
   store.set("crowd", crowd);
+  if (!repeatsInSpace(crowd)) store.set("tiles", false);
   void loadReport(parameters.report).then((report) => store.set("report", report));
 }
 

@@ -10,6 +10,8 @@ export interface Parameters {
   color: ColorMode;
   outlines: Outlines;
   bodies: boolean;
+  /** Around a crowd whose ground repeats. */
+  tiles: boolean;
   person: number | null;
   /** Name of the kind of a patch set to begin with. */
   kind: string | null;
@@ -40,6 +42,7 @@ export function readParameters(query: string): Parameters {
     color: one("color", COLOR_MODES, "character"),
     outlines: one("outlines", OUTLINES, "shared"),
     bodies: q.get("bodies") !== "0",
+    tiles: q.get("tiles") === "1",
     kind: q.get("kind"),
     person: person === null ? null : Math.floor(person),
     follow: q.get("follow") === "1",

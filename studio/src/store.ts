@@ -40,6 +40,8 @@ export interface State {
   outlines: Outlines;
   /** Bodies are drawn. */
   bodies: boolean;
+  /** The tiles around a crowd whose ground repeats are drawn as well. */
+  tiles: boolean;
   /** Index of the selected person. */
   person: number | null;
   follow: boolean;
@@ -74,6 +76,7 @@ export class Store {
     color: "character",
     outlines: "shared",
     bodies: true,
+    tiles: false,
     person: null,
     follow: false,
     problem: null,

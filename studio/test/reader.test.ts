@@ -76,7 +76,7 @@ describe("a broken crowd", () => {
     const bytes = small();
     new Uint8Array(bytes).set([80, 75], 0);
     expect(problem(bytes)).toMatch(/byte 0: expected the magic bytes "CQCROWD", found "PK/);
-    expect(problem(small({ version: 4 }))).toBe("byte 8: expected version 1 or 2 or 3, found 4");
+    expect(problem(small({ version: 5 }))).toBe("byte 8: expected version 1 or 2 or 3 or 4, found 5");
     expect(problem(new ArrayBuffer(0))).toMatch(/^byte 0/);
   });
 

@@ -122,12 +122,22 @@ def check_file(
         raise typer.Exit(CHECK_FAILED)
 
 
+def unrolled(crowd: Crowd, times: str) -> Crowd:
+    """A block of a crowd that repeats; `times` is tiles along x and z, and laps if there are three numbers."""
+    counts = times.split("x")
+    if len(counts) not in (2, 3) or not all(c.isdecimal() and 1 <= int(c) <= 99 for c in counts):
+        raise typer.BadParameter(f"expected something like 3x3 or 3x3x2, found {times}", param_hint="--unroll")
+    x, z, t = (int(c) for c in [*counts, "1"][:3])
+    return crowd.unrolled(x, z, t)
+
+
 @app.command(
     "export",
     epilog=example(
         "export plaza.crowd -o plaza.glb",
         "export plaza.crowd -o plaza.glb --character ann.glb --character bob.glb",
         "export plaza.crowd -o plaza_bvh",
+        "export tile.crowd -o block.glb --unroll 3x3",
     ),
 )
 def export_file(
@@ -141,9 +151,15 @@ def export_file(
         list[Path] | None,
         typer.Option(help="Your own skinned humanoid (.glb) in place of the mannequin; repeat it to deal out several."),
     ] = None,
+    unroll: Annotated[
+        str | None,
+        typer.Option(help="Of a crowd that repeats so many tiles along x and z and laps, such as 3x3 or 3x3x2."),
+    ] = None,
 ) -> None:
     """Write a crowd for other programs: glTF with skinned, animated people, or BVH."""
     found = Crowd.load(crowd)
+    if unroll is not None:
+        found = unrolled(found, unroll)
     if character and out.suffix != ".glb":
         raise typer.BadParameter(f"characters go into .glb files: found {out}", param_hint="--character")
     match out.suffix:

@@ -22,14 +22,23 @@ HULL_RADIUS = 0.34
 HEAD = 3  # the head's place among the body's capsules
 
 
-def plan(crowd: Crowd, path: str | Path | None = None, time: float | None = None, dpi: int = 160) -> Figure:
+def plan(
+    crowd: Crowd, path: str | Path | None = None, time: float | None = None, dpi: int = 160, tiles: int = 3
+) -> Figure:
     """Draw the crowd from above at `time` seconds, by default when most people are together.
 
-    Saves to `path` if one is given (`.png`, `.svg`, `.pdf`), and returns the figure.
+    A crowd whose ground repeats is drawn as a block of `tiles` by `tiles` tiles. Saves to `path` if one is given
+    (`.png`, `.svg`, `.pdf`), and returns the figure.
     """
     who = lives(crowd)
     secs = busiest(crowd, who) if time is None else min(max(time, 0.0), crowd.seconds)
+    told, seams = (crowd, who), np.zeros(2)
     low, high = crowd.region.min(axis=0), crowd.region.max(axis=0)
+    repeats = np.array([axis in crowd.periodic for axis in "xz"])
+    if tiles > 1 and repeats.any():
+        seams, high = np.where(repeats, high - low, 0.0), high + np.where(repeats, (tiles - 1) * (high - low), 0.0)
+        crowd = crowd.unrolled(tiles, tiles, 1)
+        who = lives(crowd)
     width, depth = high - low
     inches = 9.0
     sheet = style.new_figure(inches + 1.0, inches * depth / width + 2.2)
@@ -39,16 +48,28 @@ def plan(crowd: Crowd, path: str | Path | None = None, time: float | None = None
     axes.set(xlim=(low[0] - margin, high[0] + margin), ylim=(high[1] + margin, low[1] - margin), aspect="equal")
     axes.axis("off")
     ground(axes, crowd, secs)
+    borders(axes, low, high, seams)
     kind_colours, palette = style.colours(crowd)
     hulls(axes, crowd, who, secs, kind_colours)
     now = person_colours(crowd, who, secs, kind_colours)
     trails(axes, crowd, secs, now)
     bodies(axes, crowd, secs, now)
-    captions(sheet, crowd, who, secs, palette)
+    captions(sheet, *told, secs, palette)
     scale_bar(axes, high)
     if path is not None:
         style.save(sheet, Path(path), dpi)
     return sheet
+
+
+def borders(axes: Axes, low: np.ndarray, high: np.ndarray, period: np.ndarray) -> None:
+    """Lines where one tile goes on into the next."""
+    dashed = {"color": style.INK, "linewidth": 0.9, "linestyle": (0, (5, 4)), "zorder": 1.5}
+    if period[0] > 0:
+        for x in np.arange(low[0], high[0] + 0.5 * period[0], period[0]):
+            axes.plot([x, x], [low[1], high[1]], **dashed)
+    if period[1] > 0:
+        for z in np.arange(low[1], high[1] + 0.5 * period[1], period[1]):
+            axes.plot([low[0], high[0]], [z, z], **dashed)
 
 
 def ground(axes: Axes, crowd: Crowd, secs: float) -> None:

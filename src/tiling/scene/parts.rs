@@ -2,6 +2,7 @@
 
 use glam::Vec2;
 
+pub use crate::geom::Periodic;
 use crate::geom::{Ground, Polygon};
 
 /// Which kinds of a patch set are used, by their labels.
@@ -76,22 +77,4 @@ pub struct Team {
     pub start: Polygon,
     /// Which way they look then, radians; any if none.
     pub heading: Option<f32>,
-}
-
-/// Directions in which the domain repeats: what leaves on one side comes in on the other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Periodic {
-    /// Along x.
-    pub x: bool,
-    /// Along z.
-    pub z: bool,
-    /// In time.
-    pub t: bool,
-}
-
-impl Periodic {
-    /// True if it repeats in any.
-    pub fn any(self) -> bool {
-        self.x || self.z || self.t
-    }
 }

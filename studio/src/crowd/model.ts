@@ -89,6 +89,8 @@ export interface Crowd {
   region: Vec2[];
   obstacles: Obstacle[];
   lastFrame: number;
+  /** Where the crowd repeats: along x and z with the region, in time with the last frame, which is the first again. */
+  periodic: { x: boolean; z: boolean; t: boolean };
   kinds: Kind[];
   /** Kind of every instance. */
   instances: number[];

@@ -5,8 +5,8 @@ import type { Build, Character, Crowd, Flesh, Fragment, Joint, Kind, Prop, Vec2,
 import { obstacle } from "./obstacle";
 
 export const MAGIC = "CQCROWD";
-/** Files of version 1 have no boxes, of version 2 only obstacles that are walls. */
-export const VERSIONS = [1, 2, 3];
+/** Files of version 1 have no boxes, of version 2 only obstacles that are walls, of version 3 nothing that repeats. */
+export const VERSIONS = [1, 2, 3, 4];
 
 /** The crowd in `buffer`. Throws a FileProblem that names the place. */
 export function readCrowd(buffer: ArrayBuffer): Crowd {
@@ -28,6 +28,7 @@ export function readCrowd(buffer: ArrayBuffer): Crowd {
       return obstacle(o, polygon(o, `obstacle ${i}`), `obstacle ${i}`);
     }),
     lastFrame: count(domain.last_frame, "header.domain.last_frame"),
+    periodic: periodic(domain.periodic),
     kinds: list(object(header.set, "header.set").kinds, "header.set.kinds").map(kind),
     instances: list(header.instances, "header.instances").map((v, i) => {
       return count(object(v, `instance ${i}`).kind, `instance ${i}, kind`);
@@ -42,6 +43,11 @@ export function readCrowd(buffer: ArrayBuffer): Crowd {
   checkLengths(crowd);
   checkReferences(crowd);
   return crowd;
+}
+
+function periodic(value: unknown): Crowd["periodic"] {
+  const v = value === undefined ? {} : object(value, "header.domain.periodic");
+  return { x: v.x === true, z: v.z === true, t: v.t === true };
 }
 
 function seedText(value: unknown, header: string): string {

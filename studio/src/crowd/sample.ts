@@ -1,6 +1,7 @@
 /** Poses on the CPU: the reference for the GPU, and what picking and following use. No allocation per call. */
 
 import type { Crowd, Vec3 } from "./model";
+import { intoTile, type Tile, tileOf } from "./tiles";
 
 /** Global joint transforms of one person. */
 export class Pose {
@@ -19,7 +20,7 @@ export function ownFrame(crowd: Crowd, person: number, secs: number): number {
   return frames > 0 && at >= 0 && at <= frames - 1 ? at : -1;
 }
 
-/** Hips position of a person into `out`; false while absent. */
+/** Hips position of a person into `out`, inside the region where the ground repeats; false while absent. */
 export function sampleRoot(crowd: Crowd, person: number, secs: number, out: Float32Array | number[]): boolean {
   const at = ownFrame(crowd, person, secs);
   if (at < 0) return false;
@@ -31,8 +32,19 @@ export function sampleRoot(crowd: Crowd, person: number, secs: number, out: Floa
     const b = crowd.root[(c.firstFrame + j) * 3 + axis];
     out[axis] = a + (b - a) * (at - i);
   }
+  const { middle, period } = tile(crowd);
+  out[0] += intoTile(out[0], middle[0], period[0]);
+  out[2] += intoTile(out[2], middle[1], period[1]);
   return true;
 }
+
+/** Worked out once per crowd. */
+function tile(crowd: Crowd): Tile {
+  const known = tiles.get(crowd) ?? tileOf(crowd);
+  tiles.set(crowd, known);
+  return known;
+}
+const tiles = new WeakMap<Crowd, Tile>();
 
 /** Middle and heading of a prop at `secs` into `out` (x, y, z, heading); false while it is not there. */
 export function sampleProp(crowd: Crowd, prop: number, secs: number, out: Float32Array | number[]): boolean {

@@ -11,10 +11,12 @@ import {
   PlaneGeometry,
   RGBADepthPacking,
   ShaderMaterial,
+  Vector2,
   Vector3,
   type WebGLProgramParametersWithUniforms,
 } from "three";
-import type { Crowd } from "../crowd/model";
+import type { Crowd, Vec2 } from "../crowd/model";
+import { tileOf, tileOffsets } from "../crowd/tiles";
 import { buildMannequin, restPositions } from "./mannequin";
 import { PART_COUNT } from "./palette";
 import { CLOTHES, poseLookup, skinning } from "./shaders";
@@ -26,12 +28,17 @@ export class People {
   readonly body: Mesh;
   readonly spots: Mesh;
   readonly uniforms: Uniforms;
+  private readonly people: number;
+  /** All tiles that can be shown; the crowd's own comes first. */
+  private readonly tiles: Vec2[];
 
   constructor(
     crowd: Crowd,
     private readonly textures: CrowdTextures,
   ) {
     const people = crowd.characters.length;
+    this.people = people;
+    this.tiles = tileOffsets(tileOf(crowd));
     this.uniforms = {
       posePositions: { value: textures.poses.textures[0] },
       poseRotations: { value: textures.poses.textures[1] },
@@ -44,10 +51,19 @@ export class People {
       colorMode: { value: 0 },
       chosen: { value: -1 },
       partCount: { value: PART_COUNT },
+      personCount: { value: Math.max(people, 1) },
+      tileOffsets: { value: Array.from({ length: 9 }, (_, i) => new Vector2(...(this.tiles[i] ?? [0, 0]))) },
     };
     const detail = people > 1500 ? 0.45 : people > 300 ? 0.6 : 1;
     this.body = this.makeBody(crowd, detail);
     this.spots = this.makeSpots(crowd);
+  }
+
+  /** Shows all tiles around the crowd's own, or that one alone. Images are drawn in the same calls. */
+  repeat(all: boolean): void {
+    const instances = this.people * (all ? this.tiles.length : 1);
+    (this.body.geometry as InstancedBufferGeometry).instanceCount = instances;
+    (this.spots.geometry as InstancedBufferGeometry).instanceCount = instances * 3;
   }
 
   /** Brings the joint transforms to `secs` and raises everybody by `lift`. Its cost does not depend on the people. */
@@ -65,7 +81,7 @@ export class People {
     geometry.setAttribute("bones", new BufferAttribute(made.bones, 4));
     geometry.setAttribute("weights", new BufferAttribute(made.weights, 4));
     geometry.setAttribute("part", new BufferAttribute(made.parts, 1));
-    const builds = new Float32Array(crowd.characters.map((c) => c.build));
+    const builds = new Float32Array(this.tiles.flatMap(() => crowd.characters.map((c) => c.build)));
     geometry.setAttribute("build", new InstancedBufferAttribute(builds, 1));
     geometry.setIndex(new BufferAttribute(made.indices, 1));
     const material = new MeshStandardMaterial({ roughness: 0.82, metalness: 0 });
@@ -132,7 +148,7 @@ const SPOT_VERTEX = /* glsl */ `
 uniform float lift; uniform int feet[3]; uniform int chosen;
 varying vec2 vAt; varying float vDark; varying float vRing;
 void main() {
-  int person = gl_InstanceID / 3, which = gl_InstanceID % 3;
+  int person = personOf(gl_InstanceID / 3), which = gl_InstanceID % 3;
   vec4 hips = texelFetch(posePositions, poseTexel(person, 0), 0);
   ivec2 joint = poseTexel(person, feet[which]);
   vec4 at = texelFetch(posePositions, joint, 0);
@@ -146,6 +162,7 @@ void main() {
   vec2 placed = at.xz + forward * p.y + vec2(forward.y, -forward.x) * p.x;
   vAt = uv * 2.0 - 1.0;
   vDark = foot ? 0.42 * clamp(1.0 - (at.y - 0.02) * 6.0, 0.0, 1.0) : 0.26;
+  placed += tileOffsetOf(gl_InstanceID / 3);
   if (hips.w < 0.5) placed = vec2(0.0);
   vec4 world = vec4(placed.x, lift + 0.006 + 0.001 * float(which), placed.y, 1.0);
   gl_Position = hips.w < 0.5 ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * viewMatrix * world;

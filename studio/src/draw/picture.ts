@@ -27,6 +27,9 @@ interface Drawn {
   marks: Marks | null;
 }
 
+/** How much farther one looks at a block of tiles than at one. */
+const TILES_RADIUS = 2.6;
+
 export interface FrameStats {
   /** JavaScript time of the last picture and a running mean, in milliseconds. */
   jsMs: number;
@@ -53,6 +56,7 @@ export class Picture {
     store.bus.on("redraw", () => this.invalidate());
     store.bus.on("view", (view) => this.aim(view, true));
     store.bus.on("aim", (view) => this.aim(view, true));
+    store.bus.on("tiles", () => this.aim(store.get("view"), true));
     store.bus.on("person", () => this.followed.setScalar(Number.NaN));
     store.bus.on("follow", (on) => this.startFollowing(on));
     new ResizeObserver(() => this.resize()).observe(canvas);
@@ -96,7 +100,8 @@ export class Picture {
   aim(view: View, fly: boolean, turned = false): void {
     if (!this.drawn) return;
     this.store.set("follow", false);
-    const { center, radius } = this.stage;
+    const { center } = this.stage;
+    const radius = this.stage.radius * (this.store.get("tiles") ? TILES_RADIUS : 1);
     if (view === "loom") {
       const middle = center.clone().setY(this.drawn.loom.height * 0.43);
       this.cameras.aim(view, middle, Math.hypot(radius, this.drawn.loom.height / 2) * 1.12, fly, turned);
@@ -137,6 +142,7 @@ export class Picture {
     people.uniforms.colorMode.value = COLOR_MODES.indexOf(store.get("color"));
     people.uniforms.chosen.value = store.get("person") ?? -1;
     people.body.visible = people.spots.visible = store.get("bodies");
+    people.repeat(store.get("tiles"));
     people.update(time, lift);
     boxes.group.visible = store.get("bodies");
     boxes.update(time, lift, !inLoom);

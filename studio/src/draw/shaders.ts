@@ -21,7 +21,7 @@ precision highp float; precision highp int; precision highp sampler2D;
 precision highp isampler2D;
 uniform isampler2D rotations; uniform sampler2D roots; uniform isampler2D people;
 uniform float frame; uniform int personCount; uniform int columns;
-uniform int parents[${joints}]; uniform sampler2D builds;
+uniform int parents[${joints}]; uniform sampler2D builds; uniform vec4 tile;
 layout(location = 0) out vec4 outPosition;
 layout(location = 1) out vec4 outRotation;
 ${TEXEL}
@@ -50,7 +50,11 @@ void main() {
   }
   int width = textureSize(roots, 0).x;
   vec4 rootA = texelFetch(roots, texelOf(who.x + i, width), 0), rootB = texelFetch(roots, texelOf(who.x + j, width), 0);
-  outPosition = vec4(p + mix(rootA.xyz, rootB.xyz, t), 1.0 + (t < 1.0 ? rootA.w : rootB.w));
+  vec3 root = mix(rootA.xyz, rootB.xyz, t);
+  // Inside the region where the ground repeats.
+  if (tile.z > 0.0) root.x -= tile.z * round((root.x - tile.x) / tile.z);
+  if (tile.w > 0.0) root.z -= tile.w * round((root.z - tile.y) / tile.w);
+  outPosition = vec4(p + root, 1.0 + (t < 1.0 ? rootA.w : rootB.w));
   outRotation = q;
 }
 `;
@@ -58,11 +62,14 @@ void main() {
 /** Reads the result of the pose pass in a vertex shader. */
 export const poseLookup = (joints: number): string => /* glsl */ `
 precision highp sampler2D;
-uniform sampler2D posePositions, poseRotations; uniform int poseColumns;
+uniform sampler2D posePositions, poseRotations; uniform int poseColumns, personCount; uniform vec2 tileOffsets[9];
 ${TEXEL}
 ivec2 poseTexel(int person, int joint) {
   return ivec2((person % poseColumns) * ${joints} + joint, person / poseColumns);
 }
+/** Instances are all people of the first tile, then all people of the next. */
+int personOf(int instance) { return instance % personCount; }
+vec2 tileOffsetOf(int instance) { return tileOffsets[instance / personCount]; }
 `;
 
 /** Skins \`position\` and \`normal\` into \`skinned\` and \`skinnedNormal\`; people who are absent vanish. */
@@ -72,7 +79,7 @@ uniform vec3 rest[${joints}]; uniform float lift; uniform sampler2D builds;
 attribute float build; attribute vec4 bones; attribute vec4 weights; attribute float part;
 vec3 skinned, skinnedNormal;
 void skin(vec3 point, vec3 direction) {
-  int person = gl_InstanceID;
+  int person = personOf(gl_InstanceID);
   skinned = vec3(0.0); skinnedNormal = vec3(0.0);
   if (texelFetch(posePositions, poseTexel(person, 0), 0).w < 0.5) { skinned = vec3(0.0, -1e4, 0.0); return; }
   for (int n = 0; n < 4; n++) {
@@ -86,7 +93,8 @@ void skin(vec3 point, vec3 direction) {
     skinned += weights[n] * (texelFetch(posePositions, at, 0).xyz + turn(q, grown));
     skinnedNormal += weights[n] * turn(q, direction / flesh.xyz);
   }
-  skinned.y += lift;
+  vec2 beside = tileOffsetOf(gl_InstanceID);
+  skinned += vec3(beside.x, lift, beside.y);
 }
 `;
 
@@ -95,16 +103,16 @@ export const CLOTHES = /* glsl */ `
 uniform sampler2D looks, fragmentColors; uniform int colorMode, chosen, partCount;
 varying vec3 vCloth; varying float vChosen;
 vec4 look(int part) {
-  return texelFetch(looks, texelOf(gl_InstanceID * partCount + part, textureSize(looks, 0).x), 0);
+  return texelFetch(looks, texelOf(personOf(gl_InstanceID) * partCount + part, textureSize(looks, 0).x), 0);
 }
 void dress() {
   int id = int(part + 0.5);
   vec4 own = look(id);
   vCloth = own.rgb;
-  vChosen = gl_InstanceID == chosen ? 1.0 : 0.0;
+  vChosen = personOf(gl_InstanceID) == chosen ? 1.0 : 0.0;
   if (own.a < 0.5) skinned = vec3(0.0, -1e4, 0.0);
   if (colorMode == 0) return;
-  int current = int(texelFetch(posePositions, poseTexel(gl_InstanceID, 0), 0).w + 0.5) - 1;
+  int current = int(texelFetch(posePositions, poseTexel(personOf(gl_InstanceID), 0), 0).w + 0.5) - 1;
   vec4 color = vec4(0.6, 0.6, 0.6, 0.0);
   int width = textureSize(fragmentColors, 0).x;
   if (current >= 0) color = texelFetch(fragmentColors, texelOf(current * 2 + colorMode - 1, width), 0);

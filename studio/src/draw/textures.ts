@@ -18,10 +18,12 @@ import {
   SRGBColorSpace,
   DataTexture as Texture,
   UnsignedByteType,
+  Vector4,
   type WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
 import type { Crowd } from "../crowd/model";
+import { tileOf } from "../crowd/tiles";
 import { type Packed, packBuilds, packFragmentColors, packPeople, packRoots, packRotations } from "./packing";
 import { bytes, categorical, looksOf, PART_COUNT } from "./palette";
 import { POSE_VERTEX, poseFragment } from "./shaders";
@@ -136,6 +138,7 @@ function poseMaterial(crowd: Crowd, width: number, limit: number, builds: DataTe
   const rotations = packRotations(crowd, width);
   const roots = packRoots(crowd, width);
   const people = packPeople(crowd, Math.min(width, limit));
+  const tile = tileOf(crowd);
   return new RawShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: POSE_VERTEX,
@@ -150,6 +153,7 @@ function poseMaterial(crowd: Crowd, width: number, limit: number, builds: DataTe
       frame: { value: 0 },
       personCount: { value: crowd.characters.length },
       columns: { value: COLUMNS },
+      tile: { value: new Vector4(...tile.middle, ...tile.period) },
       parents: { value: crowd.joints.map((j) => j.parent) },
     },
   });

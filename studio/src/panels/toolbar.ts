@@ -1,5 +1,6 @@
 /** Views, colours and outlines, at the top right. */
 
+import { repeatsInSpace } from "../crowd/tiles";
 import { type ColorMode, type Outlines, type Store, VIEWS, type View } from "../store";
 import { changeView, HELP } from "../tools/keys";
 import { button, choice, el, pairs } from "./dom";
@@ -35,6 +36,14 @@ export function installToolbar(parent: HTMLElement, store: Store): void {
     ],
     (value) => store.set("outlines", value),
   );
+  const tiles = choice<"one" | "all">(
+    "Tiles",
+    [
+      ["one", "One", "The region alone (T)"],
+      ["all", "3 x 3", "The tiles around it as well (T)"],
+    ],
+    (value) => store.set("tiles", value === "all"),
+  );
   const help = pairs("help panel", HELP);
   help.hidden = true;
   const helpButton = button(
@@ -47,11 +56,14 @@ export function installToolbar(parent: HTMLElement, store: Store): void {
   );
   const field = (label: string, control: HTMLElement, classes = "") =>
     el("div", `field ${classes}`, [el("span", "label", [label]), control]);
+  const tilesField = field("Tiles", tiles.element, "of-crowd");
+  tilesField.hidden = true;
   parent.append(
     el("div", "toolbar", [
       field("View", views.element),
       field("Colour", colors.element, "of-crowd"),
       field("Outlines", outlines.element, "of-crowd"),
+      tilesField,
       helpButton,
     ]),
     help,
@@ -59,6 +71,11 @@ export function installToolbar(parent: HTMLElement, store: Store): void {
   store.bus.on("view", views.mark);
   store.bus.on("color", colors.mark);
   store.bus.on("outlines", outlines.mark);
+  store.bus.on("tiles", (all) => tiles.mark(all ? "all" : "one"));
+  store.bus.on("crowd", (crowd) => {
+    tilesField.hidden = !repeatsInSpace(crowd);
+  });
+  tiles.mark(store.get("tiles") ? "all" : "one");
   views.mark(store.get("view"));
   colors.mark(store.get("color"));
   outlines.mark(store.get("outlines"));

@@ -37,6 +37,7 @@ export function crowdOf(set: PatchSet, kind: SetKind): Crowd {
     region: floor(pathPoints),
     obstacles: [],
     lastFrame: kind.lastFrame,
+    periodic: { x: false, z: false, t: false },
     kinds: [{ name: kind.name, labels: kind.labels, people: kind.roles.length }],
     instances: [0],
     characters,

@@ -15,6 +15,7 @@ export const HELP: readonly (readonly [string, string])[] = [
   ["L", "loom"],
   ["C", "next colours"],
   ["O", "next outlines"],
+  ["T", "the tiles around a crowd that repeats"],
   ["F", "follow the selected person"],
   ["Esc", "let go"],
 ];
@@ -24,6 +25,7 @@ export interface Next {
   color: () => void;
   outlines: () => void;
   kind: (step: 1 | -1) => void;
+  tiles: () => void;
 }
 
 export function installKeys(store: Store, player: Player, next: Next): void {
@@ -41,6 +43,7 @@ export function installKeys(store: Store, player: Player, next: Next): void {
     l: () => store.set("view", store.get("view") === "loom" ? "persp" : "loom"),
     c: next.color,
     o: next.outlines,
+    t: next.tiles,
     f: () => store.set("follow", store.get("person") !== null && !store.get("follow")),
     Escape: () => {
       store.set("follow", false);

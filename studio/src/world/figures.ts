@@ -17,6 +17,7 @@ import {
   SphereGeometry,
   SRGBColorSpace,
   UnsignedByteType,
+  Vector2,
   Vector3,
   type WebGLProgramParametersWithUniforms,
 } from "three";
@@ -117,6 +118,8 @@ export class Figures {
       colorMode: { value: 0 },
       chosen: { value: -1 },
       partCount: { value: PART_COUNT },
+      personCount: { value: MOST_NEAR },
+      tileOffsets: { value: Array.from({ length: 9 }, () => new Vector2()) },
     };
     const material = new MeshStandardMaterial({ roughness: 0.82, metalness: 0 });
     material.onBeforeCompile = (shader) => inject(shader, gait.joints.length, uniforms);
