@@ -304,3 +304,130 @@ pub(super) fn shuffled<'p>(passages: &'p [Passage], rng: &mut ChaCha8Rng) -> Vec
     order.shuffle(rng);
     order
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::common::plain_set;
+    use super::super::view::View;
+    use super::*;
+    use crate::deform::Limits;
+    use crate::patch::PatchSet;
+
+    const WAYS: [Way; 3] = [Way::Come, Way::Stay, Way::Part];
+
+    fn with<T>(set: &PatchSet, ask: impl FnOnce(&Library, &Passages) -> T) -> T {
+        let library = Library::new(set, Limits::default());
+        ask(&library, &Passages::new(&library))
+    }
+
+    /// The plain set, and two who stand before each other.
+    fn sociable_set() -> PatchSet {
+        let mut set = plain_set();
+        let mut kind = set.kinds.iter().find(|k| k.name == "idle-40").expect("somebody stands").clone();
+        kind.name = "talk".into();
+        kind.fragments.push(kind.fragments[0].clone());
+        for (fragment, at) in kind.fragments.iter_mut().zip([0.0, std::f32::consts::PI]) {
+            let path = &mut fragment.motion.path;
+            path.points.fill(Vec2::new(0.0, -0.6 * at.cos()));
+            path.headings.fill(at);
+        }
+        set.kinds.push(kind);
+        set
+    }
+
+    #[test]
+    fn everybody_comes_parts_and_goes_on_by_pieces_that_join() {
+        with(&sociable_set(), |library, passages| {
+            let close = |a: Port, b: Port| {
+                a.tick == b.tick && a.group == b.group && a.at.position.distance(b.at.position) < 1e-3
+            };
+            let mut encores = 0;
+            for (&kind, way) in library.multi.iter().flat_map(|kind| WAYS.map(|way| (kind, way))) {
+                let here = parts(library, kind, Ground::IDENTITY, BEGIN);
+                assert!(matches!(way, Way::Stay) || !passages.of(kind, way).is_empty());
+                for passage in passages.of(kind, way) {
+                    let there = passage.encore.map(|e| (e, e.parts(library, Ground::IDENTITY, BEGIN)));
+                    encores += usize::from(there.is_some());
+                    for (role, pieces) in passage.ways.iter().enumerate() {
+                        let (first, last) = (library.entry_of(&pieces[0]), library.exit_of(&pieces[pieces.len() - 1]));
+                        let joints = pieces.windows(2).map(|w| (library.exit_of(&w[0]), library.entry_of(&w[1])));
+                        assert!(joints.into_iter().all(|(exit, entry)| close(exit, entry)));
+                        match way {
+                            Way::Come => assert!(close(last, here[role].entry) && last.tick - first.tick >= LEAD),
+                            Way::Part => assert!(close(first, here[role].exit) && last.tick - first.tick >= LEAD),
+                            Way::Stay => {
+                                let (encore, there) = there.as_ref().expect("people go on");
+                                let next = (0..there.len()).find(|&k| encore.player(k, there.len()) == role);
+                                assert!(close(first, here[role].exit) && close(last, there[next.unwrap()].entry));
+                            }
+                        }
+                    }
+                }
+            }
+            assert!(encores > 0, "nobody ever goes on");
+        });
+    }
+
+    #[test]
+    fn wherever_a_passage_is_put_it_is_the_same_and_free() {
+        with(&sociable_set(), |library, passages| {
+            let domain = Domain::new(&Scene::demo()).unwrap();
+            let tracks = Tracks::new(library, &domain);
+            let mut desk = Desk::default();
+            let kind = library.multi[library.multi.len() - 1];
+            for (clock, heading) in [(60, 0.4), (300, -2.5), (-40, 1.0)] {
+                let at = Ground::new(Vec2::splat(6.0), heading);
+                for passage in WAYS.into_iter().flat_map(|way| passages.of(kind, way)) {
+                    let mut draft = Draft::new(&tracks, &mut desk);
+                    let ids =
+                        draft.add_patch(parts(library, kind, at, clock).iter().map(|p| (p.role, p.entry))).unwrap();
+                    let site = Site {
+                        world_from_patch: at,
+                        clock,
+                        ends: [draft.piece(ids[0]).instance, draft.new_instance()],
+                    };
+                    let ways = put(&mut draft, passage, site, |_, _| true).expect("an empty place has room");
+                    for (role, way) in ways.iter().enumerate() {
+                        for (piece, &id) in passage.ways[role].iter().zip(way) {
+                            let put = draft.piece(id);
+                            assert_eq!((put.begin - clock, put.role), (piece.begin - BEGIN, piece.role));
+                            assert!(put.entry().position.distance(at.then(piece.entry()).position) < 1e-3);
+                        }
+                    }
+                    let blocked = View::new(library, &domain, &tracks.occupancy);
+                    assert!(ways.iter().flatten().all(|&id| blocked.is_free(draft.piece(id))));
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn where_there_is_no_room_nothing_is_left_behind() {
+        with(&plain_set(), |library, passages| {
+            let domain = Domain::new(&Scene::demo()).unwrap();
+            let tracks = Tracks::new(library, &domain);
+            let mut desk = Desk::default();
+            let mut draft = Draft::new(&tracks, &mut desk);
+            let kind = library.multi[0];
+            // In the corner people would come through the walls.
+            let site = Site { world_from_patch: Ground::new(Vec2::ZERO, 0.0), clock: 100, ends: [1, 2] };
+            for passage in passages.of(kind, Way::Come) {
+                assert!(put(&mut draft, passage, site, |_, _| true).is_none());
+            }
+            assert!(draft.finish().pieces.is_empty());
+        });
+    }
+
+    #[test]
+    fn a_study_is_the_same_for_everybody_who_asks() {
+        let studied = || {
+            with(&sociable_set(), |library, passages| {
+                let ways =
+                    |passage: &Passage| passage.ways.iter().flatten().map(|p| (p.role, p.begin)).collect::<Vec<_>>();
+                let of = |kind| WAYS.map(|way| passages.of(kind, way).iter().map(ways).collect::<Vec<_>>());
+                library.multi.iter().rev().map(|&kind| of(kind)).collect::<Vec<_>>()
+            })
+        };
+        assert_eq!(studied(), studied());
+    }
+}

@@ -96,3 +96,73 @@ fn are_apart(draft: &Draft, turns: [&Turn; 2], bodies: [&Body; 2]) -> bool {
         depth <= TOLERANCE || depth <= TOLERANCE + captured_depth(draft.base.library, draft.base.domain, pieces, tick)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::bridge::Port;
+    use super::super::common::plain_set;
+    use super::super::draft::Desk;
+    use super::super::scene::Scene;
+    use super::super::tracks::Tracks;
+    use super::*;
+    use crate::deform::Limits;
+    use crate::geom::Ground;
+    use crate::patch::PatchSet;
+    use glam::Vec2;
+
+    /// Two people alone, the second `apart` metres beside the first; true if they are let pass.
+    fn tried(set: &PatchSet, kind: &str, apart: f32) -> bool {
+        let library = Library::new(set, Limits::default());
+        let kind = set.kinds.iter().position(|k| k.name == kind).unwrap() as u32;
+        let role = library.first_role[kind as usize];
+        let domain = Domain::new(&Scene::demo()).unwrap();
+        let tracks = Tracks::new(&library, &domain);
+        let mut desk = Desk::default();
+        let mut draft = Draft::new(&tracks, &mut desk);
+        for k in 0..2 {
+            let at = Ground::new(Vec2::new(5.0 + k as f32 * apart, 5.0), 0.0);
+            let entry = Port { at, tick: 100, group: library.roles[role as usize].entry_group };
+            let piece = Piece::rigid(&library, &domain, role, super::super::bridge::NO_INSTANCE, entry.at, entry.tick);
+            let id = draft.add(piece);
+            draft.push_track(vec![id]);
+        }
+        is_clean(&draft)
+    }
+
+    #[test]
+    fn people_who_run_into_each_other_are_not_let_pass() {
+        let set = plain_set();
+        for kind in ["idle-40", "cycle-1"] {
+            assert!(!tried(&set, kind, 0.15) && tried(&set, kind, 0.9), "{kind}");
+        }
+    }
+
+    #[test]
+    fn who_moves_as_nobody_can_is_not_let_pass() {
+        let mut set = plain_set();
+        let limb = crate::motion::joint::LEFT_FORE_ARM;
+        let turned = |set: &mut PatchSet, angle: f32| {
+            let kind = set.kinds.iter_mut().find(|k| k.name == "idle-40").unwrap();
+            let rotations = &mut kind.fragments[0].motion.rotations;
+            // Between two frames, far from the ends, and back again.
+            rotations[20 * JOINT_COUNT + limb] = glam::Quat::from_rotation_y(angle);
+        };
+        turned(&mut set, 0.0);
+        assert!(tried(&set, "idle-40", 1.5));
+        // The fastest turn of the set is this one itself; played at another speed it would be too fast.
+        turned(&mut set, 1.0);
+        let library = Library::new(&set, Limits::default());
+        let body = |frames: std::ops::Range<usize>| {
+            let kind = set.kinds.iter().find(|k| k.name == "idle-40").unwrap();
+            let poses = frames.flat_map(|f| kind.fragments[0].motion.pose(f).to_vec());
+            Body { root: vec![glam::Vec3::new(5.0, 0.9, 5.0); 6], rotations: poses.collect(), ..Body::default() }
+        };
+        let mut fast = body(17..23);
+        fast.rotations[3 * JOINT_COUNT + limb] = glam::Quat::from_rotation_y(1.3);
+        let domain = Domain::new(&Scene::demo()).unwrap();
+        assert!(first_unclean(&body(17..23), &library, &domain, 0..6).is_none());
+        assert_eq!(first_unclean(&fast, &library, &domain, 0..6), Some(3));
+    }
+
+    use crate::motion::JOINT_COUNT;
+}
