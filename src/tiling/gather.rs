@@ -14,7 +14,7 @@ use super::draft::Draft;
 use super::occupancy::PieceId;
 use super::passage::{Part, Passages, Site, Way, parts, put, shuffled};
 use super::piece::{Company, Rigid};
-use super::tryout::is_clean;
+use super::tryout::is_clean_where;
 use crate::geom::Ground;
 
 /// Places tried for a first patch.
@@ -46,13 +46,25 @@ pub(super) struct Life {
     pub end: Port,
     /// The first and the last patch of several people.
     pub company: Company,
+    /// How many patches lead to where it first meets others, and from where it last does.
+    led: [usize; 2],
 }
 
 impl Life {
     /// One patch.
     pub fn of(part: &Part, id: PieceId, instance: u32) -> Self {
         let company = Company { from: instance, to: instance };
-        Self { pieces: vec![id], begin: part.entry, end: part.exit, company }
+        Self { pieces: vec![id], begin: part.entry, end: part.exit, company, led: [0; 2] }
+    }
+
+    /// The patches that lead to where it meets others.
+    fn came(&self) -> &[PieceId] {
+        &self.pieces[..self.led[0]]
+    }
+
+    /// The patches that lead on from there.
+    fn parted(&self) -> &[PieceId] {
+        &self.pieces[self.pieces.len() - self.led[1]..]
     }
 
     /// The tick up to which it may go on together: the end of time, or when it must be on the way to where it began.
@@ -85,10 +97,13 @@ pub(super) fn gather(
     rng: &mut ChaCha8Rng,
 ) -> Option<()> {
     let meeting = (0..PLACES).find_map(|_| place(draft, wish, rng))?;
-    for life in live(draft, passages, meeting, wish, taste, rng)? {
-        draft.push_track(life.pieces);
-    }
-    is_clean(draft).then_some(())
+    let lives = live(draft, passages, meeting, wish, taste, rng)?;
+    // Passages are known to be clean, so that only what leads to and from them is new.
+    let (came, parted): (Vec<_>, Vec<_>) = lives.iter().map(|l| (l.came().to_vec(), l.parted().to_vec())).unzip();
+    let among = |ways: &[Vec<PieceId>], id: PieceId| ways.iter().flatten().any(|&way| way == id);
+    lives.into_iter().for_each(|life| draft.push_track(life.pieces));
+    let is_clean = is_clean_where(draft, |id| among(&came, id)) && is_clean_where(draft, |id| among(&parted, id));
+    is_clean.then_some(())
 }
 
 /// The lives of new people who are at a meeting: they come, stay together as long as wished, and part.
@@ -253,6 +268,7 @@ pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut C
     if life.begin.tick > 0 && !draft.base.domain.cycle.loops() {
         let company = Company { to: life.company.from, ..Company::NONE };
         let way = lead(draft, life.begin, Goal::Since(0), company, taste, rng)?;
+        life.led[0] = way.len();
         life.pieces.splice(..0, way);
     }
     Some(())
@@ -261,15 +277,18 @@ pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut C
 /// Leads somebody from their last patch to the end of time, or round to their first one.
 pub(super) fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let horizon = draft.base.domain.horizon;
-    if draft.base.domain.cycle.loops() {
+    let way = if draft.base.domain.cycle.loops() {
         let company = Company { from: life.company.to, to: life.company.from };
         let mut tries = [Company::NONE, company].into_iter();
-        let way = tries.find_map(|company| draft.come_round(life.end, life.begin, company, taste, rng))?;
-        life.pieces.extend(way);
+        tries.find_map(|company| draft.come_round(life.end, life.begin, company, taste, rng))?
     } else if life.end.tick < horizon {
         let company = Company { from: life.company.to, ..Company::NONE };
-        life.pieces.extend(lead(draft, life.end, Goal::Until(horizon), company, taste, rng)?);
-    }
+        lead(draft, life.end, Goal::Until(horizon), company, taste, rng)?
+    } else {
+        vec![]
+    };
+    life.led[1] = way.len();
+    life.pieces.extend(way);
     Some(())
 }
 

@@ -17,7 +17,7 @@ use super::occupancy::PieceId;
 use super::piece::{Company, Piece};
 use super::scene::Scene;
 use super::tracks::Tracks;
-use super::tryout::is_clean;
+use super::tryout::is_clean_where;
 use crate::geom::{Ground, Polygon};
 
 /// When a patch begins on open ground, ticks: nothing comes before the first tick.
@@ -251,7 +251,8 @@ impl Study<'_> {
     ) -> Option<Passage> {
         chains.into_iter().for_each(|chain| self.draft.push_track(chain));
         let piece = |id: PieceId| self.draft.piece(id);
-        if ways.iter().flatten().any(|&id| piece(id).leaves_box()) || !is_clean(&self.draft) {
+        let is_way = |id| ways.iter().flatten().any(|&way| way == id);
+        if ways.iter().flatten().any(|&id| piece(id).leaves_box()) || !is_clean_where(&self.draft, is_way) {
             return None;
         }
         let ways = ways.into_iter().map(|way| way.into_iter().map(|id| piece(id).clone()).collect()).collect();

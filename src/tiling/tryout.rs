@@ -34,8 +34,8 @@ struct Turn<'d> {
 
 impl<'d> Turn<'d> {
     /// `None` if nothing is new in a track.
-    fn of(draft: &'d Draft, track: &[PieceId]) -> Option<Self> {
-        let mut new = track.iter().filter(|&&id| Sketch::is_sketched(id)).map(|&id| draft.piece(id));
+    fn of(draft: &'d Draft, track: &[PieceId], is_new: impl Fn(PieceId) -> bool) -> Option<Self> {
+        let mut new = track.iter().filter(|&&id| is_new(id)).map(|&id| draft.piece(id));
         let first = new.next()?;
         let last = new.next_back().unwrap_or(first);
         let ticks = first.begin - BLEND_TICKS..last.end + BLEND_TICKS;
@@ -55,8 +55,13 @@ impl<'d> Turn<'d> {
 /// True if everybody in a draft moves as people can and no two of them run into each other. Where time comes round, each
 /// person counts ticks from somewhere else; there only the former is told. O(new ticks x joints).
 pub(super) fn is_clean(draft: &Draft) -> bool {
+    is_clean_where(draft, Sketch::is_sketched)
+}
+
+/// The same from the first to the last of some pieces of each person.
+pub(super) fn is_clean_where(draft: &Draft, is_new: impl Fn(PieceId) -> bool) -> bool {
     let (library, domain) = (draft.base.library, draft.base.domain);
-    let turns: Vec<Turn> = tracks(draft).filter_map(|track| Turn::of(draft, track)).collect();
+    let turns: Vec<Turn> = tracks(draft).filter_map(|track| Turn::of(draft, track, &is_new)).collect();
     let chains: Vec<_> = turns.iter().map(|t| uses(library, domain, t.pieces.iter().copied())).collect();
     let people: Vec<_> = chains.iter().map(|chain| segments(chain)).collect();
     let bodies = refine_all(&people, domain.last_frame(), domain.torus).bodies;
