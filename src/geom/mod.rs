@@ -3,12 +3,14 @@
 mod capsule;
 pub mod complex;
 mod cuboid;
+mod gate;
 mod ground;
 mod obstacle;
 mod polygon;
 
 pub use capsule::Capsule;
 pub use cuboid::{Cuboid, Upright};
+pub use gate::Gate;
 pub use ground::{Ground, Turn, wrap_angle};
 pub use obstacle::{Obstacle, Waypoint};
 pub use polygon::Polygon;

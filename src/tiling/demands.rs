@@ -49,11 +49,11 @@ fn may_jump(scene: &Scene) -> bool {
 /// Refuses what the method cannot do.
 fn possible(scene: &Scene, method: Method) -> Result<()> {
     let asked = [
-        ("source", !scene.sources.is_empty()),
-        ("sink", !scene.sinks.is_empty()),
+        ("source", method == Method::Paper && !scene.sources.is_empty()),
+        ("sink", method == Method::Paper && !scene.sinks.is_empty()),
         ("place", method == Method::Paper && !scene.placed.is_empty()),
-        ("team", !scene.teams.is_empty()),
-        ("rivals", !scene.rivals.is_empty()),
+        ("team", method == Method::Paper && !scene.teams.is_empty()),
+        ("rivals", method == Method::Paper && !scene.rivals.is_empty()),
         ("periodic", scene.periodic.any()),
     ];
     let name = match method {
@@ -76,6 +76,13 @@ fn known(scene: &Scene, set: &PatchSet) -> Result<()> {
     let of_rivals = scene.rivals.iter().map(|l| ("rivals", l.as_str()));
     if let Some((place, label)) = of_kinds.chain(of_wishes).chain(of_rivals).find(|(_, l)| !labels.contains(l)) {
         let problem = format!("expected a label of the patch set ({}), found {label:?}", labels.join(", "));
+        return Err(Error::invalid("scene", place, problem));
+    }
+    let gates = scene.sources.iter().map(|s| ("source", &s.gate)).chain(scene.sinks.iter().map(|s| ("sink", &s.gate)));
+    let unknown = |g: &str| set.groups.iter().all(|known| known.name != g);
+    if let Some((place, group)) = gates.filter_map(|(k, g)| Some((k, g.group.as_ref()?))).find(|(_, g)| unknown(g)) {
+        let names: Vec<&str> = set.groups.iter().map(|g| g.name.as_str()).collect();
+        let problem = format!("expected a pose group of the patch set ({}), found {group:?}", names.join(", "));
         return Err(Error::invalid("scene", place, problem));
     }
     let people = |name: &str| set.kinds.iter().find(|k| k.name == name).map(PatchKind::people);

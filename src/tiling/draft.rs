@@ -88,7 +88,9 @@ impl<'a> Draft<'a> {
     ) -> Option<Vec<PieceId>> {
         let view = View { sketch: &self.desk.sketch, ..self.base.view() };
         let chain = self.desk.bridge.search(view, from, goal, company, taste, rng)?;
-        Some(chain.into_iter().map(|piece| self.add(piece)).collect())
+        // Ways out may lead beyond the end of time.
+        let seen = chain.into_iter().filter(|piece| piece.begin < self.base.domain.horizon);
+        Some(seen.map(|piece| self.add(piece)).collect())
     }
 
     /// Puts a piece in.
@@ -144,8 +146,8 @@ impl<'a> Draft<'a> {
     ) -> Option<()> {
         let Window { track, from, to } = window;
         let (begin, end) = (self.base.port(track, from), self.base.port(track, to));
-        let open = to == self.base.tracks[track].len();
-        let (begin, goal) = match (from == 0, open) {
+        let open = to == self.base.tracks[track].len() && self.base.ends_open(track);
+        let (begin, goal) = match (from == 0 && self.base.begins_open(track), open) {
             (_, true) => (begin, Goal::Until(self.base.domain.horizon)),
             (true, false) => (end, Goal::Since(0)),
             (false, false) => (begin, Goal::Port(end)),

@@ -15,6 +15,7 @@ use super::library::Role;
 use super::occupancy::PieceId;
 use super::piece::{Company, Piece};
 use super::prefer::Stay;
+use super::team::{may_meet, team_of};
 use super::tracks::{TrackId, Tracks, Window};
 use crate::geom::Ground;
 use crate::motion::FPS;
@@ -68,7 +69,7 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
     let lead_track = rng.random_range(0..tracks.tracks.len());
     let lead = &library.roles[lead_role as usize];
     let horizon = tracks.domain.horizon;
-    let (at, tick, joint) = meeting_point(tracks, lead_track, lead, ticks, rng);
+    let (at, tick, joint) = meeting_point(tracks, lead_track, lead, ticks, rng)?;
     if !fits_hands(tracks, lead_track, lead.entry_group, tick) {
         return None;
     }
@@ -90,7 +91,8 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
         }
         let part = |track, keep_before, keep_after| Part { track, role, entry, exit, keep_before, keep_after };
         let part = if role != lead_role {
-            let taken = |t: TrackId| t == lead_track || parts.iter().any(|p| p.track == t);
+            let barred = |t: TrackId, other: TrackId| t == other || !may_meet(tracks, kind, t, other);
+            let taken = |t: TrackId| barred(t, lead_track) || parts.iter().any(|p| barred(t, p.track));
             let heir = heir(tracks, role, exit, world_from_patch, clock);
             let (track, from, to) = player(tracks, &entry, &heir, taken, &mut near, rng)?;
             part(track, from, to)
@@ -116,20 +118,24 @@ fn meeting_point(
     lead: &Role,
     ticks: Range<i32>,
     rng: &mut ChaCha8Rng,
-) -> (Ground, i32, Option<usize>) {
+) -> Option<(Ground, i32, Option<usize>)> {
     let tick = rng.random_range(ticks);
     // Some patches are met half-way through at the first frame.
     let tick = if tick < EARLY_TICKS { tick - rng.random_range(0..lead.ticks) } else { tick };
+    if !tracks.is_there(track, tick.max(0)) {
+        return None;
+    }
     if tick > 0 && rng.random_range(0..2) == 0 {
         let joint = tracks.index_at(track, tick);
         let port = tracks.port(track, joint);
         if port.group == lead.entry_group && port.tick > 0 && port.tick < tracks.domain.horizon - 15 {
-            return (port.at, port.tick, Some(joint));
+            return Some((port.at, port.tick, Some(joint)));
         }
     }
     let on_the_way = tracks.state_at(track, tick.max(0));
     let aside = Vec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * JITTER;
-    (on_the_way.then(Ground::new(aside, rng.random_range(-JITTER_TURN..JITTER_TURN))), tick, None)
+    let at = on_the_way.then(Ground::new(aside, rng.random_range(-JITTER_TURN..JITTER_TURN)));
+    Some((at, tick, None))
 }
 
 /// From where a role's future is taken over: from its own exit, but where a box is handed on the one who comes with it
@@ -180,27 +186,27 @@ fn fits_hands(tracks: &Tracks, track: TrackId, group: u32, tick: i32) -> bool {
     library.laden[library.roles[piece.role as usize].entry_group as usize] == library.laden[group as usize]
 }
 
-/// First piece to rip up so that the person can walk to `entry`: where that is easiest; 0 if the person begins there.
+/// First piece to rip up so that the person can walk to `entry`: where that is easiest; 0 if the person may begin there.
 fn rip_from(tracks: &Tracks, track: TrackId, entry: &Port) -> Option<usize> {
-    let mut best = (0, None);
+    let (mut best, open) = ((0, None), tracks.begins_open(track));
     for index in (0..tracks.index_before(track, entry.tick)).rev() {
         let from = tracks.port(track, index);
         if entry.tick - from.tick > LONGEST_BRIDGE || tracks.people_of(tracks.tracks[track][index]) > 1 {
             return best.1;
         }
         let ease = easy_closings(tracks.library, from, *entry);
-        if ease > best.0 && from.tick > 0 {
+        if ease > best.0 && (from.tick > 0 || index == 0 && !open) {
             best = (ease, Some(index));
         }
     }
-    best.1.or(Some(0))
+    best.1.or(open.then_some(0))
 }
 
 /// First piece to keep after the patch; the number of pieces if the rest of the time is planned anew.
 fn rip_to(tracks: &Tracks, track: TrackId, entry: &Port, exit: &Port) -> Option<usize> {
-    let count = tracks.tracks[track].len();
+    let (count, open) = (tracks.tracks[track].len(), tracks.ends_open(track));
     let mut best = (0, None);
-    for index in tracks.index_before(track, exit.tick)..count {
+    for index in tracks.index_before(track, exit.tick)..count + usize::from(!open) {
         let to = tracks.port(track, index);
         if to.tick - exit.tick > LONGEST_BRIDGE {
             break;
@@ -209,11 +215,11 @@ fn rip_to(tracks: &Tracks, track: TrackId, entry: &Port, exit: &Port) -> Option<
         if ease > best.0 {
             best = (ease, Some(index));
         }
-        if tracks.people_of(tracks.tracks[track][index]) > 1 {
+        if tracks.tracks[track].get(index).is_some_and(|&id| tracks.people_of(id) > 1) {
             break;
         }
     }
-    let index = best.1.unwrap_or(count);
+    let index = best.1.or(open.then_some(count))?;
     no_patch_between(tracks, track, entry.tick, tracks.port(track, index).tick).then_some(index)
 }
 
@@ -283,13 +289,21 @@ fn step_aside(draft: &mut Draft, parts: &[Part]) -> Option<Vec<Window>> {
     Some(windows)
 }
 
+/// True if a part leads to the end of time wherever that is.
+fn is_open(tracks: &Tracks, part: &Part) -> bool {
+    part.keep_after == tracks.tracks[part.track].len() && tracks.ends_open(part.track)
+}
+
 /// Whose future each part takes over: the pairing with the least way to go (parts are few). Nobody lives on with a box
 /// who has none.
 fn futures(tracks: &Tracks, parts: &[Part]) -> Vec<usize> {
     let way = |i: usize, j: usize| {
         let to = tracks.port(parts[j].track, parts[j].keep_after);
         let left = (to.tick - parts[i].exit.tick) as f32 / FPS;
-        let open = parts[j].keep_after == tracks.tracks[parts[j].track].len();
+        if i != j && team_of(tracks, parts[i].track) != team_of(tracks, parts[j].track) {
+            return NO_WAY;
+        }
+        let open = is_open(tracks, &parts[j]);
         let laden = |group: u32| tracks.library.laden[group as usize];
         if !open && laden(to.group) != laden(parts[i].exit.group) {
             return NO_WAY;
@@ -319,7 +333,7 @@ fn lead_in(
         return Some(vec![]);
     }
     match part.keep_before {
-        0 => draft.search(part.entry, Goal::Since(0), company, taste, rng),
+        0 if draft.base.begins_open(part.track) => draft.search(part.entry, Goal::Since(0), company, taste, rng),
         _ => draft.search(from, Goal::Port(part.entry), company, taste, rng),
     }
 }
@@ -333,7 +347,7 @@ fn lead_out(
     rng: &mut ChaCha8Rng,
 ) -> Option<Vec<PieceId>> {
     let (tracks, horizon) = (draft.base, draft.base.domain.horizon);
-    let open = future.keep_after == tracks.tracks[future.track].len();
+    let open = is_open(tracks, future);
     if open && part.exit.tick >= horizon {
         return Some(vec![]);
     }

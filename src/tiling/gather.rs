@@ -16,6 +16,7 @@ use super::library::Library;
 use super::occupancy::PieceId;
 use super::piece::{Company, Rigid};
 use super::prefer::Stay;
+use super::source::{way_out, with_patience};
 use crate::geom::Ground;
 
 /// Places tried for a first patch.
@@ -290,12 +291,13 @@ pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut C
     Some(())
 }
 
-/// Leads somebody from their last patch to the end of time.
+/// Leads somebody from their last patch to the end of time, or out.
 pub(super) fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let horizon = draft.base.domain.horizon;
     if life.end.tick < horizon {
         let company = Company { from: life.company.to, ..Company::NONE };
-        life.pieces.extend(lead(draft, life.end, Goal::Until(horizon), company, taste, rng)?);
+        let goal = way_out(draft, life.end, rng);
+        life.pieces.extend(lead(draft, life.end, goal, company, with_patience(taste, goal), rng)?);
     }
     Some(())
 }

@@ -11,6 +11,7 @@ use super::bridge::{Goal, NO_INSTANCE, Taste};
 use super::draft::Draft;
 use super::library::Library;
 use super::piece::{Company, Piece, Rigid};
+use super::source::lead_out;
 use crate::geom::Ground;
 
 /// Places, times and headings tried for one jump.
@@ -32,7 +33,7 @@ pub(super) fn hurdle(draft: &mut Draft, jumpers: &[u32], taste: Taste, rng: &mut
         if entry.tick > 0 { draft.search(entry, Goal::Since(0), Company::NONE, taste, rng)? } else { vec![] };
     pieces.push(id);
     if exit.tick < horizon {
-        pieces.extend(draft.search(exit, Goal::Until(horizon), Company::NONE, taste, rng)?);
+        pieces.extend(lead_out(draft, exit, Company::NONE, taste, rng)?);
     }
     draft.push_track(pieces);
     Some(())

@@ -30,6 +30,8 @@ mod rehearsal;
 mod scene;
 mod seed;
 mod sketch;
+mod source;
+mod team;
 mod tracks;
 mod view;
 
@@ -43,4 +45,4 @@ pub use engine::tile;
 pub use grid::Grid;
 pub use outcome::{Method, Options, Outcome, Phase, Progress, Status};
 pub use prefer::{Field, Form, Preference, Term};
-pub use scene::{Gate, KindFilter, Periodic, Placed, Scene, Sink, Source, Team};
+pub use scene::{KindFilter, Periodic, Placed, Scene, Sink, Source, Team};

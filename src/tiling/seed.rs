@@ -4,24 +4,25 @@ use glam::Vec2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::bridge::{Goal, NO_INSTANCE, Taste};
+use super::bridge::{NO_INSTANCE, Taste};
 use super::domain::Spot;
 use super::draft::Draft;
 use super::library::{Library, Move};
 use super::piece::{Company, Piece};
 use super::prefer::Stay;
+use super::source::lead_out;
 use crate::geom::Ground;
 
 /// Places tried for one person.
 const PLACES: usize = 20;
 
-/// Adds a person at a random place of the domain, present over the whole time; one who begins with a box in the hands,
+/// Adds a person who is at a random place of the domain at first, until the end of time or out; one who begins with a box in the hands,
 /// or by taking one up, if so wished.
 pub(super) fn seed_person(draft: &mut Draft, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let first = (0..PLACES).find_map(|_| first_piece(draft, laden, rng))?;
     let exit = draft.base.library.exit_of(&first);
     let mut pieces = vec![draft.add(first)];
-    pieces.extend(draft.search(exit, Goal::Until(draft.base.domain.horizon), Company::NONE, taste, rng)?);
+    pieces.extend(lead_out(draft, exit, Company::NONE, taste, rng)?);
     draft.push_track(pieces);
     Some(())
 }
