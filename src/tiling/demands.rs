@@ -9,6 +9,9 @@ use crate::{Error, Result};
 /// Label of kinds that are for jumping over something.
 const JUMP: &str = "jump";
 
+/// Label of what is done on one leg: for scenes that ask for it.
+const HOP: &str = "hop";
+
 /// Label of kinds that are only used where a scene has placed them.
 const STAGED: &str = "staged";
 
@@ -22,8 +25,9 @@ pub(super) fn admitted<'a>(scene: &Scene, set: &'a PatchSet, method: Method) -> 
     known(scene, set)?;
     let used = |kind: &PatchKind| {
         let placed = scene.placed.iter().any(|p| p.kind == kind.name);
-        let wanted = scene.kinds.lets_pass(&kind.labels) && (!has(kind, JUMP) || may_jump(scene)) && !has(kind, STAGED);
-        placed || wanted
+        let jumps = !has(kind, JUMP) || may_jump(scene);
+        let hops = !has(kind, HOP) || is_asked_for(scene, HOP);
+        placed || scene.kinds.lets_pass(&kind.labels) && jumps && hops && !has(kind, STAGED)
     };
     if set.kinds.iter().all(used) {
         return Ok(Cow::Borrowed(set));
@@ -43,7 +47,12 @@ fn has(kind: &PatchKind, label: &str) -> bool {
 /// People jump where there is something to jump over, or where they are told to.
 fn may_jump(scene: &Scene) -> bool {
     let over = scene.obstacles.iter().any(|o| o.height.is_some());
-    over || scene.kinds.only.iter().map(String::as_str).chain(scene.preference.labels()).any(|l| l == JUMP)
+    over || is_asked_for(scene, JUMP)
+}
+
+/// True if a scene names a label as one that it uses or prefers.
+fn is_asked_for(scene: &Scene, label: &str) -> bool {
+    scene.kinds.only.iter().map(String::as_str).chain(scene.preference.labels()).any(|l| l == label)
 }
 
 /// Refuses what the method cannot do.
