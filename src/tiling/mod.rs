@@ -32,6 +32,7 @@ mod seed;
 mod sketch;
 mod source;
 mod team;
+mod torsos;
 mod tracks;
 mod view;
 
