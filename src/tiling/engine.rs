@@ -50,7 +50,8 @@ const GATHER_EXPANSIONS: usize = 300;
 const HOPELESS: f32 = 0.7;
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 4000;
-/// Every so many people one is wished for who begins with a box in the hands, for so many tries.
+/// Every so many people one is wished for who begins with a box in the hands, for so many tries; the more, the more of
+/// that is wanted.
 const LADEN_EVERY: usize = 20;
 const LADEN_PATIENCE: usize = 60;
 const LADEN_EXPANSIONS: usize = 300;
@@ -334,9 +335,10 @@ impl Engine<'_> {
     fn seed(&mut self) {
         let most = self.most;
         let boxes = self.crew.tracks.library.laden.contains(&true);
+        let every = laden_every(self.crew.tracks.library);
         let mut failures = 0;
         while self.people_left() > 0 && failures < SEED_PATIENCE && self.goes_on(Phase::Seed) {
-            let laden = boxes && self.people_left().is_multiple_of(LADEN_EVERY) && failures < LADEN_PATIENCE;
+            let laden = boxes && self.people_left().is_multiple_of(every) && failures < LADEN_PATIENCE;
             let count = if laden { 1 } else { self.crew.batch.min(self.people_left()) };
             // Fewer patches go on with a box in the hands: the search needs longer.
             let taste = if laden { Taste { expansions: LADEN_EXPANSIONS, ..self.taste } } else { self.taste };
@@ -415,6 +417,17 @@ impl Engine<'_> {
             rehearsal.repeat(&self.crew.tracks);
         }
     }
+}
+
+/// Every how many people one is to begin with a box: the preference may want what is done with boxes more than all else.
+fn laden_every(library: &Library) -> usize {
+    let mean = |laden: bool| {
+        let singles = library.forward.iter().enumerate().filter(|(g, _)| library.laden[*g] == laden).flat_map(|(_, m)| m);
+        let weights = singles.map(|m| library.preference.weight_of_kind(library.roles[m.role as usize].kind));
+        let (sum, count) = weights.fold((0.0, 0), |(sum, count), w| (sum + w, count + 1));
+        sum / count.max(1) as f32
+    };
+    ((LADEN_EVERY as f32 * mean(false) / mean(true).max(1e-6)).round() as usize).clamp(1, LADEN_EVERY)
 }
 
 /// Leads somebody another way for some seconds: new neighbours meet.
