@@ -111,7 +111,9 @@ fn known(scene: &Scene, set: &PatchSet) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tiling::{Form, Periodic, Preference, Term};
+    use crate::geom::Gate;
+    use crate::tiling::{Form, Periodic, Preference, Sink, Term};
+    use glam::Vec2;
 
     fn set() -> PatchSet {
         let kind = |name: &str, label: &str| PatchKind {
@@ -145,6 +147,12 @@ mod tests {
         let form = Form::Ratios(vec![("hug".into(), 2.0)]);
         let preference = Preference { terms: vec![Term { form, strength: 1.0, labels: vec![], during: None }] };
         assert!(problem(&Scene { preference, ..Scene::demo() }).contains("\"hug\""));
+        let gate = Gate { from: Vec2::ZERO, to: Vec2::ZERO, heading: None, spread: 0.1, group: Some("sit".into()) };
+        let sinks = vec![Sink { gate }];
+        let scene = Scene { sinks, ..Scene::demo() };
+        assert!(problem(&scene).contains("pose group") && problem(&scene).contains("\"sit\""));
+        let paper = admitted(&scene, &set(), Method::Paper).unwrap_err().to_string();
+        assert!(paper.contains("sink") && paper.contains("paper"), "{paper}");
         let periodic = Periodic { x: true, ..Periodic::default() };
         assert!(problem(&Scene { periodic, ..Scene::demo() }).contains("periodic"));
     }

@@ -422,7 +422,8 @@ impl Engine<'_> {
 /// Every how many people one is to begin with a box: the preference may want what is done with boxes more than all else.
 fn laden_every(library: &Library) -> usize {
     let mean = |laden: bool| {
-        let singles = library.forward.iter().enumerate().filter(|(g, _)| library.laden[*g] == laden).flat_map(|(_, m)| m);
+        let singles =
+            library.forward.iter().enumerate().filter(|(g, _)| library.laden[*g] == laden).flat_map(|(_, m)| m);
         let weights = singles.map(|m| library.preference.weight_of_kind(library.roles[m.role as usize].kind));
         let (sum, count) = weights.fold((0.0, 0), |(sum, count), w| (sum + w, count + 1));
         sum / count.max(1) as f32
