@@ -224,7 +224,9 @@ fn yaw_of(q: Quat) -> f32 {
 fn gaze(actor: &Actor, paths: &[Path], me: usize, f: &Frame) -> (f32, f32) {
     let path = &paths[me];
     let at = path.at(f.t);
-    let ahead = (path.at(f.t + 0.35).heading - at.heading).clamp(-0.6, 0.6);
+    // Who turns in one hop looks there later than who turns in two steps.
+    let soon = if actor.held_legs.is_empty() { 0.35 } else { 0.2 };
+    let ahead = (path.at(f.t + soon).heading - at.heading).clamp(-0.6, 0.6);
     let (mut yaw, mut pitch) = (ahead, 0.05);
     for (span, sight) in &actor.gazes {
         let weight = span.weight(f.t);

@@ -106,10 +106,10 @@ const SPUN: &[(f32, f32, f32)] = &[(-0.3, -0.1, 50.0), (0.0, 0.0, 50.0), (0.2, P
 const ON: &[(f32, f32, f32)] = &[(0.0, 0.0, -35.0), (0.2, P, -40.0)];
 
 const BUMPS: [Bump; 4] = [
-    Bump { name: "bump", feet: [Right, Right], apart: 0.598, thrown: [-0.5, -0.5], after: [BACK, BACK] },
-    Bump { name: "bump-far", feet: [Right, Left], apart: 0.60, thrown: [-0.35, -0.7], after: [BACK, FAR_BACK] },
-    Bump { name: "bump-spin", feet: [Right, Right], apart: 0.60, thrown: [-0.25, -0.45], after: [ON, SPUN] },
-    Bump { name: "bump-on", feet: [Left, Right], apart: 0.61, thrown: [-0.2, -0.6], after: [ON, FAR_BACK] },
+    Bump { name: "bump", feet: [Right, Right], apart: 0.605, thrown: [-0.5, -0.5], after: [BACK, BACK] },
+    Bump { name: "bump-far", feet: [Right, Left], apart: 0.575, thrown: [-0.35, -0.7], after: [BACK, FAR_BACK] },
+    Bump { name: "bump-spin", feet: [Right, Right], apart: 0.61, thrown: [-0.25, -0.45], after: [ON, SPUN] },
+    Bump { name: "bump-on", feet: [Left, Right], apart: 0.588, thrown: [-0.2, -0.6], after: [ON, FAR_BACK] },
 ];
 
 /// How far apart their ways are.
