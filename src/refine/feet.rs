@@ -1,11 +1,11 @@
 //! Planted feet stay where they are: each plant locks the ball of the foot to one place, legs follow by inverse
 //! kinematics, hips come down where a leg would have to be longer than it is.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use super::leg::{self, Leg};
 use super::{Body, Segment, smoothstep};
-use crate::motion::joint::{LEFT_FOOT, RIGHT_FOOT};
+use crate::motion::joint::{LEFT_FOOT, RIGHT_FOOT, RIGHT_TOE};
 use crate::motion::{Foot, JOINT_COUNT, canonical};
 
 /// Frames over which hips come down and rise again.
@@ -52,10 +52,11 @@ pub(super) fn lock(segments: &[Segment], body: &mut Body) {
         return;
     }
     let legs = [(Foot::Left, LEFT_FOOT), (Foot::Right, RIGHT_FOOT)];
-    let offsets = legs.map(|(foot, ankle)| {
-        let balls = trajectory(body, ankle + 1);
-        let mut offsets = corrections(&balls, &locks(segments, foot, body.begin as i32, frames as i32));
-        keep_above_floor(&balls, &mut offsets);
+    let balls = trajectories(body, legs.map(|(_, ankle)| ankle + 1));
+    let offsets = [0, 1].map(|k| {
+        let (foot, balls) = (legs[k].0, &balls[k]);
+        let mut offsets = corrections(balls, &locks(segments, foot, body.begin as i32, frames as i32));
+        keep_above_floor(balls, &mut offsets);
         offsets
     });
     let lowering = lowering(body, legs.map(|(_, ankle)| ankle), &offsets);
@@ -63,10 +64,11 @@ pub(super) fn lock(segments: &[Segment], body: &mut Body) {
     for f in 0..frames {
         let down = lowering[f];
         body.root[f].y -= down;
+        // One leg moves no joint of the other.
+        leg_globals(body, f, &mut globals);
         for (k, (_, ankle)) in legs.into_iter().enumerate() {
             let mut shift = offsets[k][f] + Vec3::Y * down;
             let pose = &mut body.rotations[f * JOINT_COUNT..(f + 1) * JOINT_COUNT];
-            canonical().globals(body.root[f], pose, &mut globals);
             shift.y += leg::lift_toes(pose, &mut globals, ankle, shift.y);
             if shift.length_squared() > 1e-10
                 && leg::plant(pose, &globals, ankle, shift).is_strained()
@@ -98,13 +100,19 @@ fn locks(segments: &[Segment], foot: Foot, begin: i32, frames: i32) -> Vec<Lock>
     locks
 }
 
-fn trajectory(body: &Body, joint: usize) -> Vec<Vec3> {
-    let mut globals = Vec::new();
-    let position = |f: usize| {
-        body.globals(f, &mut globals);
-        globals[joint].0
-    };
-    (0..body.root.len()).map(position).collect()
+/// Global transforms of the hips and the legs, which come first.
+fn leg_globals(body: &Body, f: usize, out: &mut Vec<(Vec3, Quat)>) {
+    canonical().globals(body.root[f], &body.pose(f)[..=RIGHT_TOE], out);
+}
+
+/// Where two joints of the legs are on each frame.
+fn trajectories(body: &Body, joints: [usize; 2]) -> [Vec<Vec3>; 2] {
+    let (mut globals, mut out) = (Vec::new(), [const { Vec::new() }; 2]);
+    for f in 0..body.root.len() {
+        leg_globals(body, f, &mut globals);
+        out.iter_mut().zip(joints).for_each(|(places, joint)| places.push(globals[joint].0));
+    }
+    out
 }
 
 /// What to add to the ball's position on each frame: exactly what keeps it in place over a plant, and a smooth way
@@ -155,7 +163,7 @@ fn lowering(body: &Body, ankles: [usize; 2], offsets: &[Vec<Vec3>; 2]) -> Vec<f3
     let mut globals = Vec::new();
     let need: Vec<f32> = (0..n)
         .map(|f| {
-            body.globals(f, &mut globals);
+            leg_globals(body, f, &mut globals);
             let of_leg = |k: usize| match offsets[k][f] {
                 Vec3::ZERO => 0.0,
                 shift => Leg::new(&globals, ankles[k], shift).lowering(),

@@ -8,7 +8,7 @@ use super::domain::Domain;
 use super::library::Library;
 use super::occupancy::{Occupancy, PieceId};
 use super::piece::Piece;
-use crate::patch::{Fragment, PatchKind, filed_rotation};
+use crate::patch::{PatchKind, filed_rotation};
 use crate::refine::{Body, Performance};
 use crate::stage::{Character, Crowd, DomainInfo, FragmentUse, Instance};
 
@@ -34,12 +34,6 @@ impl<'a> Chains<'a> {
     /// Number of people in a piece's patch.
     pub fn people_of(self, piece: &Piece) -> usize {
         self.library.set.kinds[self.library.roles[piece.role as usize].kind as usize].people()
-    }
-
-    /// What was captured of a piece's person.
-    pub fn fragment(self, piece: &Piece) -> &'a Fragment {
-        let role = &self.library.roles[piece.role as usize];
-        &self.library.set.kinds[role.kind as usize].fragments[role.role as usize]
     }
 
     /// The piece a person is in at `tick`.

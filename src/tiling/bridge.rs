@@ -74,7 +74,7 @@ const LEAP_WEIGHT: f32 = 4.0;
 /// Cost of a box that lies about for a second.
 const CLUTTER_WEIGHT: f32 = 0.05;
 /// Below this mean speed a patch counts as standing, m/s.
-const STANDING_SPEED: f32 = 0.25;
+pub(super) const STANDING_SPEED: f32 = 0.25;
 
 struct Node {
     at: Port,

@@ -65,10 +65,9 @@ impl<'a> Draft<'a> {
         self.view().piece(id)
     }
 
-    /// The pieces of a person in the making.
-    pub fn track(&self, track: TrackId) -> &[PieceId] {
-        let set = self.tracks.iter().rev().find(|t| t.0 == track);
-        set.map_or(&self.base.tracks[track], |t| &t.1)
+    /// Whose pieces were set so far, and which: of one person the last count.
+    pub fn changed(&self) -> &[(TrackId, Vec<PieceId>)] {
+        &self.tracks
     }
 
     /// A number for the pieces of a patch of several people.

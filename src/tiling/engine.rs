@@ -16,12 +16,13 @@ use super::demands::admitted;
 use super::domain::Domain;
 use super::draft::Draft;
 use super::enrich::enrich;
-use super::gather::{Encores, Wish, gather};
+use super::gather::{Wish, gather};
 use super::hurdle::{hurdle, jumpers};
 use super::keyframe::keyframes;
 use super::library::Library;
 use super::mend::{dissolve, mend};
 use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
+use super::passage::Passages;
 use super::plan::Plan;
 use super::rehearsal::Rehearsal;
 use super::seed::seed_person;
@@ -43,11 +44,13 @@ const HURDLERS: usize = 6;
 /// Failed tries in a row after which nobody more jumps.
 const HURDLE_PATIENCE: usize = 200;
 /// Failed gatherings in a row after which people come alone.
-const GATHER_PATIENCE: usize = 80;
+const GATHER_PATIENCE: usize = 400;
 /// States expanded to lead people to and from where they meet.
 const GATHER_EXPANSIONS: usize = 300;
 /// Where those to come would have to be together for more than this share of their time, no more are gathered.
 const HOPELESS: f32 = 0.7;
+/// States expanded for each step that it takes to the end of time.
+const EXPANSIONS_PER_STEP: usize = 4;
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 4000;
 /// Every so many people one is wished for who begins with a box in the hands, for so many tries; the more, the more of
@@ -177,8 +180,10 @@ fn engine(
     let clock = Clock::new(options.time_secs, progress);
     let library = Library::new(set, scene.limits).preferring(&scene.preference).placing(&scene.placed).parting(scene);
     let crew = Crew::new(Tracks::new(&library, domain), scene.region.area(), options.seed);
-    let taste = Taste { calm: calm(scene), expansions: 60 };
-    let mut engine = Engine { scene, crew, taste, clock, most: scene.characters };
+    let taste = Taste { calm: calm(scene), expansions: library.steps(domain.horizon) * EXPANSIONS_PER_STEP };
+    let passages = Passages::new(&library);
+    let plan = Plan::new(&library, &passages, domain.horizon, options.seed);
+    let mut engine = Engine { scene, crew, passages: &passages, plan, taste, clock, most: scene.characters };
     let placed = engine.keyframes();
     engine.line_up();
     engine.let_in();
@@ -221,6 +226,8 @@ fn state(tracks: &Tracks, phase: Phase) -> Progress {
 struct Engine<'a> {
     scene: &'a Scene,
     crew: Crew<'a>,
+    passages: &'a Passages<'a>,
+    plan: Plan<'a>,
     taste: Taste,
     clock: Clock<'a>,
     /// Most people: those who are there anyway, those of the teams, and those who came in.
@@ -305,13 +312,11 @@ impl Engine<'_> {
 
     /// Adds people who meet until there is as much company as wished for.
     fn gather(&mut self) {
-        let library = self.crew.tracks.library;
+        let (library, passages) = (self.crew.tracks.library, self.passages);
         let (wish, most) = (self.company_wish(), self.most);
         if library.multi.is_empty() || wish == 0 || self.people_left() == 0 || !self.scene.teams.is_empty() {
             return;
         }
-        let encores = Encores::new(library);
-        let mut plan = Plan::new(library, &encores, self.crew.tracks.domain.horizon, self.crew.seed);
         let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
         let mut failures = 0;
         while self.crew.tracks.company() < wish && failures < GATHER_PATIENCE && self.goes_on(Phase::Seed) {
@@ -320,13 +325,13 @@ impl Engine<'_> {
             if left < 2 || need > HOPELESS {
                 break;
             }
-            let wishes: Vec<Wish> = (0..self.crew.batch.min(left.div_ceil(2))).map(|_| plan.draw(need)).collect();
+            let wishes: Vec<Wish> = (0..self.crew.batch.min(left.div_ceil(2))).map(|_| self.plan.draw(need)).collect();
             let made = self.crew.work(
                 wishes.len(),
-                |i, draft, rng| gather(draft, &encores, wishes[i], taste, rng),
+                |i, draft, rng| gather(draft, passages, wishes[i], taste, rng),
                 |tracks, change| tracks.tracks.len() + change.newcomers() <= most && tracks.company() < wish,
             );
-            plan.learn(&wishes, &made);
+            self.plan.learn(&wishes, &made);
             failures = if made.contains(&true) { 0 } else { failures + made.len() };
         }
     }

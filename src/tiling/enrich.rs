@@ -17,6 +17,7 @@ use super::piece::{Company, Piece};
 use super::prefer::Stay;
 use super::team::{may_meet, team_of};
 use super::tracks::{TrackId, Tracks, Window};
+use super::tryout::is_clean;
 use crate::geom::Ground;
 use crate::motion::FPS;
 
@@ -251,7 +252,8 @@ fn perform(draft: &mut Draft, parts: &[Part], taste: Taste, rng: &mut ChaCha8Rng
         way.extend(&tracks.tracks[future.track][future.keep_after..]);
         draft.set_track(part.track, way);
     }
-    bystanders.into_iter().try_for_each(|window| draft.bridge_window(window, taste, rng))
+    bystanders.into_iter().try_for_each(|window| draft.bridge_window(window, taste, rng))?;
+    is_clean(draft).then_some(())
 }
 
 /// Takes out the windows of the tracks that are in the way of the parts; `None` if that are too many, or patches of

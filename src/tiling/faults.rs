@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::bake::Chains;
 use super::boxes::in_the_way;
+use super::bridge::NO_INSTANCE;
 use super::domain::{Domain, Spot};
 use super::figure::{Figure, Places, REACH, TOLERANCE};
 use super::library::Library;
@@ -91,7 +92,8 @@ fn touching(chains: Chains, bodies: &[Body], places: &Places, is_new: &[bool], t
     let figure = |t: TrackId| Figure::of(&bodies[t], canonical(), tick);
     places.pairs(is_new, figure, |(a, first), (b, second)| {
         let depth = first.depth_into(second);
-        if depth > TOLERANCE && depth > TOLERANCE + captured_depth(chains, (a, b), tick) {
+        let pieces = || [a, b].map(|t| chains.piece_at(t, tick));
+        if depth > TOLERANCE && depth > TOLERANCE + captured_depth(chains.library, pieces(), tick) {
             pairs.push((a.min(b), a.max(b)));
         }
     });
@@ -100,28 +102,28 @@ fn touching(chains: Chains, bodies: &[Body], places: &Places, is_new: &[bool], t
 
 /// How deep two people who are in one patch at a tick are in each other in its capture at that moment, metres; 0 if they
 /// are in two. Between two captured frames the deeper of them.
-fn captured_depth(chains: Chains, (a, b): (TrackId, TrackId), tick: i32) -> f32 {
-    let (Some(a), Some(b)) = (chains.piece_at(a, tick), chains.piece_at(b, tick)) else { return 0.0 };
-    if a.instance != b.instance {
+pub(super) fn captured_depth(library: &Library, pieces: [Option<&Piece>; 2], tick: i32) -> f32 {
+    let [Some(a), Some(b)] = pieces else { return 0.0 };
+    if a.instance != b.instance || a.instance == NO_INSTANCE {
         return 0.0;
     }
-    let clocks = [a, b].map(|piece| clock(chains, piece, tick));
+    let clocks = [a, b].map(|piece| clock(library, piece, tick));
     let (first, last) = (clocks[0].min(clocks[1]).floor() as u32, clocks[0].max(clocks[1]).ceil() as u32);
-    (first..=last).map(|c| captured(chains, a, c).depth_into(&captured(chains, b, c))).fold(0.0, f32::max)
+    (first..=last).map(|c| captured(library, a, c).depth_into(&captured(library, b, c))).fold(0.0, f32::max)
 }
 
 /// Frame (with fraction) of the patch's clock that a piece shows at a tick.
-fn clock(chains: Chains, piece: &Piece, tick: i32) -> f32 {
+fn clock(library: &Library, piece: &Piece, tick: i32) -> f32 {
     const HAIR: f32 = 1e-4;
-    let fragment = chains.fragment(piece);
+    let fragment = library.fragment(piece);
     let shown = (tick - piece.begin) as f32 / (piece.end - piece.begin) as f32;
     let at = fragment.begin as f32 + shown * (fragment.motion.len() - 1) as f32;
     if (at - at.round()).abs() < HAIR { at.round() } else { at }
 }
 
 /// What was captured of a piece's person at a frame of the patch's clock, or at its end nearest to it.
-fn captured(chains: Chains, piece: &Piece, clock: u32) -> Figure {
-    let fragment = chains.fragment(piece);
+fn captured(library: &Library, piece: &Piece, clock: u32) -> Figure {
+    let fragment = library.fragment(piece);
     let mut globals = Vec::new();
     let frame = (clock.saturating_sub(fragment.begin) as usize).min(fragment.motion.len() - 1);
     fragment.motion.globals(frame, &mut globals);

@@ -7,122 +7,24 @@ use std::f32::consts::PI;
 use glam::Vec2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 
-use super::bridge::{Goal, Port, Taste, has_easy_closings};
+use super::bridge::{Goal, NO_INSTANCE, Port, Taste};
 use super::domain::Spot;
 use super::draft::Draft;
-use super::library::Library;
 use super::occupancy::PieceId;
+use super::passage::{Part, Passages, Site, Way, parts, put, shuffled};
 use super::piece::{Company, Rigid};
 use super::prefer::Stay;
 use super::source::{way_out, with_patience};
+use super::tryout::is_clean;
 use crate::geom::Ground;
 
 /// Places tried for a first patch.
 const PLACES: usize = 200;
-/// Ways from one patch to the next that are tried until one is free.
-const STEPS: usize = 200;
-/// Free ones among them that are tried to be walked.
-const ENCORES: usize = 4;
-/// Ways that are tried out to tell whether one kind can follow another.
-const SAMPLES: usize = 16;
-/// Ways from a kind on that let its people stay together.
-const ENOUGH: usize = 3;
-/// A way that this many closings lead along is easy.
-const EASY: usize = 2;
 /// Room that the ends of a patch must have to walls, metres.
 const WALL_ROOM: f32 = 0.4;
 /// Ticks of the first patch that are seen at least.
 const SEEN: i32 = 15;
-
-/// A kind that the people of another can go on with at once, and how.
-#[derive(Clone, Copy)]
-struct Encore {
-    kind: u32,
-    /// Who plays its first role: the second role is played by the next of them, and so on round.
-    first: u32,
-    /// The closing by which they go there; it need not be deformed. The others have easy ways as well.
-    closing: u32,
-}
-
-/// By kind, what its people can go on with at once, as people do who stand together.
-pub(super) struct Encores(Vec<Vec<Encore>>);
-
-impl Encores {
-    /// Asks the table of closings. O(kinds^2 x closings).
-    pub fn new(library: &Library) -> Self {
-        let kinds = (0..library.set.kinds.len() as u32).into_par_iter();
-        Self(kinds.map(|kind| if library.multi.contains(&kind) { of_kind(library, kind) } else { vec![] }).collect())
-    }
-
-    /// True if the people of a kind can stay together after it.
-    pub fn is_sociable(&self, kind: u32) -> bool {
-        self.0[kind as usize].len() >= ENOUGH
-    }
-}
-
-fn of_kind(library: &Library, kind: u32) -> Vec<Encore> {
-    let ends: Vec<Port> = library.roles_of(kind).map(|role| library.ports(role, Ground::IDENTITY, 0).1).collect();
-    let people = ends.len() as u32;
-    let others = library.multi.iter().filter(|&&k| library.set.kinds[k as usize].people() == ends.len());
-    let mut encores = Vec::new();
-    for (kind, first) in others.flat_map(|&kind| (0..people).map(move |first| (kind, first))) {
-        let count = library.closings_between(ends[first as usize].group, first_group(library, kind)).all.len();
-        let samples = SAMPLES.min(count);
-        let sampled = (0..samples).map(|k| Encore { kind, first, closing: (k * count / samples) as u32 });
-        encores.extend(sampled.filter(|&encore| is_easy(library, &ends, encore)));
-    }
-    encores
-}
-
-/// True if everybody has easy ways from where they are into an encore.
-fn is_easy(library: &Library, ends: &[Port], encore: Encore) -> bool {
-    let parts = step(library, ends, encore);
-    parts.iter().enumerate().skip(1).all(|(k, part)| {
-        let from = ends[player(encore, k, ends.len())];
-        part.entry.tick > from.tick && has_easy_closings(library, from, part.entry, EASY)
-    })
-}
-
-fn first_group(library: &Library, kind: u32) -> u32 {
-    library.roles[library.first_role[kind as usize] as usize].entry_group
-}
-
-/// Who plays role number `k` of an encore.
-fn player(encore: Encore, k: usize, people: usize) -> usize {
-    (k + encore.first as usize) % people
-}
-
-/// One role of a placed patch.
-#[derive(Clone, Copy)]
-pub(super) struct Part {
-    /// The role.
-    pub role: u32,
-    /// Where it begins.
-    pub entry: Port,
-    /// Where it ends.
-    pub exit: Port,
-}
-
-/// An encore as it lies if who plays its first role goes there by the closing as it is.
-fn step(library: &Library, ends: &[Port], encore: Encore) -> Vec<Part> {
-    let from = ends[encore.first as usize];
-    let lead = &library.roles[library.first_role[encore.kind as usize] as usize];
-    let (closings, closing) = (library.closings_between(from.group, lead.entry_group), encore.closing as usize);
-    let world_from_patch = from.at.then(closings.spans[closing].exit).then(lead.entry.inverse());
-    let tick = from.tick + closings.all[closing].strand.frames() as i32 - 1;
-    parts(library, encore.kind, world_from_patch, tick - lead.begin)
-}
-
-/// The roles of a kind placed somewhere.
-pub(super) fn parts(library: &Library, kind: u32, world_from_patch: Ground, clock: i32) -> Vec<Part> {
-    let part = |role| {
-        let (entry, exit) = library.ports(role, world_from_patch, clock);
-        Part { role, entry, exit }
-    };
-    library.roles_of(kind).map(part).collect()
-}
 
 /// What a gathering is to be.
 #[derive(Clone, Copy)]
@@ -154,37 +56,68 @@ impl Life {
     }
 }
 
+/// A patch that some people are in.
+struct Meeting {
+    kind: u32,
+    world_from_patch: Ground,
+    clock: i32,
+    instance: u32,
+    parts: Vec<Part>,
+}
+
+impl Meeting {
+    fn site(&self, next: u32) -> Site {
+        Site { world_from_patch: self.world_from_patch, clock: self.clock, ends: [self.instance, next] }
+    }
+}
+
 /// Adds people who meet as wished, each present over the whole time.
 pub(super) fn gather(
     draft: &mut Draft,
-    encores: &Encores,
+    passages: &Passages,
     wish: Wish,
     taste: Taste,
     rng: &mut ChaCha8Rng,
 ) -> Option<()> {
-    let first = (0..PLACES).find_map(|_| place(draft, wish, rng))?;
+    let meeting = (0..PLACES).find_map(|_| place(draft, wish, rng))?;
+    for life in live(draft, passages, meeting, wish, taste, rng)? {
+        draft.push_track(life.pieces);
+    }
+    is_clean(draft).then_some(())
+}
+
+/// The lives of new people who are at a meeting: they come, stay together as long as wished, and part.
+fn live(
+    draft: &mut Draft,
+    passages: &Passages,
+    mut meeting: Meeting,
+    wish: Wish,
+    taste: Taste,
+    rng: &mut ChaCha8Rng,
+) -> Option<Vec<Life>> {
     let horizon = draft.base.domain.horizon;
-    let mut together = time_together(&first, horizon);
-    let ids = draft.add_patch(first.iter().map(|p| (p.role, p.entry)))?;
-    let here = draft.piece(ids[0]).instance;
-    let mut lives: Vec<Life> = first.iter().zip(ids).map(|(part, id)| Life::of(part, id, here)).collect();
-    let mut kind = wish.kind;
+    let mut together = time_together(&meeting.parts, horizon);
+    let ids = draft.add_patch(meeting.parts.iter().map(|p| (p.role, p.entry)))?;
+    meeting.instance = draft.piece(ids[0]).instance;
+    let mut lives: Vec<Life> =
+        meeting.parts.iter().zip(ids).map(|(part, id)| Life::of(part, id, meeting.instance)).collect();
+    come_together(draft, passages, &meeting, &mut lives, rng)?;
     while together < wish.together && lives.iter().all(|l| l.end.tick < horizon - SEEN) {
-        let Some((next, parts)) = go_on(draft, &mut lives, &encores.0[kind as usize], taste, rng) else { break };
-        together += time_together(&parts, horizon);
-        kind = next;
+        let Some(next) = go_on(draft, passages, &meeting, &mut lives, rng) else { break };
+        together += time_together(&next.parts, horizon);
+        meeting = next;
     }
     if together < wish.least {
         return None;
     }
+    part_ways(draft, passages, &meeting, &mut lives, rng)?;
     for life in &mut lives {
         come(draft, life, taste, rng)?;
     }
     for life in &mut lives {
         part(draft, life, taste, rng)?;
     }
-    lives.into_iter().for_each(|life| draft.push_track(life.pieces));
-    Some(())
+    Some(lives)
 }
 
 /// Ticks of a patch within the domain's time, on average over its people.
@@ -194,7 +127,7 @@ fn time_together(parts: &[Part], horizon: i32) -> i32 {
 }
 
 /// The first patch at some place and time that leaves room for what is to follow, if it is free there.
-fn place(draft: &Draft, wish: Wish, rng: &mut ChaCha8Rng) -> Option<Vec<Part>> {
+fn place(draft: &Draft, wish: Wish, rng: &mut ChaCha8Rng) -> Option<Meeting> {
     let (library, domain) = (draft.base.library, draft.base.domain);
     let position =
         Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
@@ -207,7 +140,8 @@ fn place(draft: &Draft, wish: Wish, rng: &mut ChaCha8Rng) -> Option<Vec<Part>> {
         return None;
     }
     let parts = parts(library, wish.kind, world_from_patch, clock);
-    is_free(draft, &parts).then_some(parts)
+    let meeting = Meeting { kind: wish.kind, world_from_patch, clock, instance: NO_INSTANCE, parts };
+    is_free(draft, &meeting.parts).then_some(meeting)
 }
 
 fn is_free(draft: &Draft, parts: &[Part]) -> bool {
@@ -220,65 +154,90 @@ fn is_free(draft: &Draft, parts: &[Part]) -> bool {
         && parts.iter().all(|p| view.is_free_rigid(p.role, rigid(p), Company::NONE))
 }
 
-/// Leads the people from where they are into another patch together; its kind and parts.
+/// Leads the people from where they are into another patch together.
 fn go_on(
     draft: &mut Draft,
+    passages: &Passages,
+    meeting: &Meeting,
     lives: &mut [Life],
-    encores: &[Encore],
-    taste: Taste,
     rng: &mut ChaCha8Rng,
-) -> Option<(u32, Vec<Part>)> {
-    if encores.is_empty() {
-        return None;
-    }
+) -> Option<Meeting> {
     let library = draft.base.library;
-    let ends: Vec<Port> = lives.iter().map(|l| l.end).collect();
-    let mut tries = 0;
-    for _ in 0..STEPS {
-        let encore = encores[rng.random_range(0..encores.len())];
-        let parts = step(library, &ends, encore);
-        let from = |k: usize| ends[player(encore, k, ends.len())];
-        let stay = Stay::new(parts[0].entry.at, parts[0].entry.tick);
-        if !library.preference.is_wanted(encore.kind, stay, rng) || !is_free(draft, &parts) {
-            continue;
+    shuffled(passages.of(meeting.kind, Way::Stay), rng).into_iter().find_map(|passage| {
+        let encore = passage.encore.expect("people go on");
+        let parts = encore.parts(library, meeting.world_from_patch, meeting.clock);
+        let (kind, stay) = (encore.kind, Stay::new(parts[0].entry.at, parts[0].entry.tick));
+        if !library.preference.is_wanted(kind, stay, rng) || !is_free(draft, &parts) {
+            return None;
         }
         let mark = draft.mark();
-        if let Some(ways) = join(draft, &parts, from, lives[0].company.to, taste, rng) {
-            let here = draft.piece(ways[0][ways[0].len() - 1]).instance;
-            // In the order of the roles that they play now.
-            lives.rotate_left(encore.first as usize);
-            for (life, (way, part)) in lives.iter_mut().zip(ways.into_iter().zip(&parts)) {
-                life.pieces.extend(way);
-                (life.end, life.company.to) = (part.exit, here);
-            }
-            return Some((encore.kind, parts));
+        let ids = draft.add_patch(parts.iter().map(|p| (p.role, p.entry)))?;
+        let instance = draft.piece(ids[0]).instance;
+        let Some(ways) = put(draft, passage, meeting.site(instance), |_, _| true) else {
+            draft.rewind(mark);
+            return None;
+        };
+        lives.iter_mut().zip(ways).for_each(|(life, way)| life.pieces.extend(way));
+        // In the order of the roles that they play now.
+        lives.rotate_left(encore.first as usize);
+        for (life, (&id, part)) in lives.iter_mut().zip(ids.iter().zip(&parts)) {
+            life.pieces.push(id);
+            (life.end, life.company.to) = (part.exit, instance);
         }
-        draft.rewind(mark);
-        tries += 1;
-        if tries == ENCORES {
-            break;
-        }
-    }
-    None
+        let lead = &library.roles[parts[0].role as usize];
+        let world_from_patch = parts[0].entry.at.then(lead.entry.inverse());
+        Some(Meeting { kind, world_from_patch, clock: parts[0].entry.tick - lead.begin, instance, parts })
+    })
 }
 
-/// Puts a patch in and leads everybody into it; each one's way, the patch included.
-fn join(
+/// Puts in how the people come to their first patch, those who are not in it from the beginning.
+fn come_together(
     draft: &mut Draft,
-    parts: &[Part],
-    from: impl Fn(usize) -> Port,
-    before: u32,
-    taste: Taste,
+    passages: &Passages,
+    meeting: &Meeting,
+    lives: &mut [Life],
     rng: &mut ChaCha8Rng,
-) -> Option<Vec<Vec<PieceId>>> {
-    let ids = draft.add_patch(parts.iter().map(|p| (p.role, p.entry)))?;
-    let company = Company { from: before, to: draft.piece(ids[0]).instance };
-    let mut lead = |(k, part): (usize, &Part)| {
-        let mut way = draft.search(from(k), Goal::Port(part.entry), company, taste, rng)?;
-        way.push(ids[k]);
-        Some(way)
-    };
-    parts.iter().enumerate().map(&mut lead).collect()
+) -> Option<()> {
+    let begins: Vec<i32> = lives.iter().map(|l| l.begin.tick).collect();
+    if begins.iter().all(|&tick| tick <= 0) {
+        return Some(());
+    }
+    let ways = shuffled(passages.of(meeting.kind, Way::Come), rng).into_iter().find_map(|passage| {
+        put(draft, passage, meeting.site(NO_INSTANCE), |role, piece| begins[role] > 0 && piece.end > 0)
+    })?;
+    for (life, way) in lives.iter_mut().zip(ways) {
+        if let Some(&first) = way.first() {
+            life.begin = draft.base.library.entry_of(draft.piece(first));
+            life.company.from = NO_INSTANCE;
+        }
+        life.pieces.splice(..0, way);
+    }
+    Some(())
+}
+
+/// Puts in how they part after their last one.
+fn part_ways(
+    draft: &mut Draft,
+    passages: &Passages,
+    meeting: &Meeting,
+    lives: &mut [Life],
+    rng: &mut ChaCha8Rng,
+) -> Option<()> {
+    let (ends, horizon): (Vec<i32>, i32) = (lives.iter().map(|l| l.end.tick).collect(), draft.base.domain.horizon);
+    if ends.iter().all(|&tick| tick >= horizon) {
+        return Some(());
+    }
+    let ways = shuffled(passages.of(meeting.kind, Way::Part), rng).into_iter().find_map(|passage| {
+        put(draft, passage, meeting.site(NO_INSTANCE), |role, piece| ends[role] < horizon && piece.begin < horizon)
+    })?;
+    for (life, way) in lives.iter_mut().zip(ways) {
+        if let Some(&last) = way.last() {
+            life.end = draft.base.library.exit_of(draft.piece(last));
+            life.company.to = NO_INSTANCE;
+        }
+        life.pieces.extend(way);
+    }
+    Some(())
 }
 
 /// Leads somebody from the beginning of time to their first patch.

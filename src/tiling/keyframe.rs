@@ -6,8 +6,9 @@ use rand_chacha::ChaCha8Rng;
 
 use super::bridge::{Goal, Taste};
 use super::draft::Draft;
-use super::gather::{Life, Part, come, part, parts};
+use super::gather::{Life, come, part};
 use super::occupancy::PieceId;
+use super::passage::{Part, parts};
 use super::piece::Company;
 use super::scene::Placed;
 use crate::motion::FPS;

@@ -15,7 +15,7 @@ use super::team::Sides;
 use crate::deform::{Limits, Strand};
 use crate::geom::{Ground, Turn, Upright};
 use crate::motion::{JOINT_COUNT, Motion, MotionPath};
-use crate::patch::{PatchKind, PatchProp, PatchSet, fastest_turns, turn_between};
+use crate::patch::{Fragment, PatchKind, PatchProp, PatchSet, fastest_turns, turn_between};
 
 /// Growth of footprints: what blending, foot locking and sampling between frames may move a body, metres.
 const MARGIN: f32 = 0.02;
@@ -241,6 +241,13 @@ impl<'a> Library<'a> {
         self
     }
 
+    /// About how many patches of one person fill so many ticks.
+    pub fn steps(&self, ticks: i32) -> usize {
+        let moves = || self.forward.iter().flatten();
+        let all: i32 = moves().map(|m| m.ticks).sum();
+        (ticks as usize * moves().count()).div_ceil(all.max(1) as usize)
+    }
+
     /// True if a role laid along `path` over `ticks` makes the hips go or turn faster than anywhere in the captures.
     pub fn is_hurried(&self, role: u32, path: &MotionPath, ticks: i32) -> bool {
         let role = &self.roles[role as usize];
@@ -265,6 +272,12 @@ impl<'a> Library<'a> {
     /// Number of people in the patch of a role.
     pub fn people_of(&self, role: u32) -> usize {
         self.set.kinds[self.roles[role as usize].kind as usize].people()
+    }
+
+    /// What was captured of a piece's person.
+    pub fn fragment(&self, piece: &Piece) -> &'a Fragment {
+        let role = &self.roles[piece.role as usize];
+        &self.set.kinds[role.kind as usize].fragments[role.role as usize]
     }
 
     /// The port at which a piece begins.

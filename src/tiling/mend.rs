@@ -6,14 +6,12 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
-use super::bake::uses;
 use super::bridge::Taste;
 use super::draft::Draft;
-use super::faults::{Fault, first_unclean};
+use super::faults::Fault;
 use super::piece::Company;
-use super::rehearsal::segments;
 use super::tracks::{TrackId, Tracks, Window};
-use crate::refine::refine;
+use super::tryout::is_clean;
 
 /// Windows around a fault are widened by multiples of this, ticks.
 const WINDOW: i32 = 24;
@@ -21,8 +19,6 @@ const WINDOW: i32 = 24;
 const DISSOLVE_REACH: usize = 3;
 /// Tries per fault.
 const TRIES: i32 = 10;
-/// Ticks around a window over which its stitches may change a body.
-const BLEND_TICKS: i32 = 16;
 
 /// Bridges one of the two people's tracks anew around the fault.
 pub(super) fn mend(draft: &mut Draft, fault: Fault, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
@@ -85,15 +81,5 @@ fn rebridge(
         true => draft.bridge_window_from(w, Company::NONE, taste, rng),
         false => draft.bridge_window(w, taste, rng),
     })?;
-    windows.iter().all(|&w| is_clean(draft, w)).then_some(())
-}
-
-/// True if a person moves cleanly over a window and a blend's length around it.
-fn is_clean(draft: &Draft, window: Window) -> bool {
-    let Tracks { library, domain, .. } = draft.base;
-    let pieces = draft.track(window.track).iter().map(|&id| draft.piece(id));
-    let body = refine(&segments(&uses(library, domain.horizon, pieces)), domain.horizon as u32 - 1);
-    let ticks = draft.base.span(window);
-    let frame = |tick: i32| (tick - body.begin as i32).clamp(0, body.root.len() as i32) as usize;
-    first_unclean(&body, library, domain, frame(ticks.start - BLEND_TICKS)..frame(ticks.end + BLEND_TICKS)).is_none()
+    is_clean(draft).then_some(())
 }

@@ -23,6 +23,7 @@ mod mend;
 mod occupancy;
 mod outcome;
 mod paper;
+mod passage;
 mod piece;
 mod plan;
 mod prefer;
@@ -34,6 +35,7 @@ mod source;
 mod team;
 mod torsos;
 mod tracks;
+mod tryout;
 mod view;
 
 #[cfg(test)]

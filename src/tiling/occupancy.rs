@@ -64,6 +64,12 @@ impl Occupancy {
         }
     }
 
+    /// One in which nothing is ever placed.
+    pub fn none() -> Self {
+        let (columns, rows, origin, max_reach) = (0, 0, Vec2::ZERO, 0.0);
+        Self { pieces: vec![], free: vec![], cells: vec![], columns, rows, origin, max_reach }
+    }
+
     /// A placed piece.
     pub fn piece(&self, id: PieceId) -> &Piece {
         self.pieces[id as usize].as_ref().expect("a live piece")

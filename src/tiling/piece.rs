@@ -130,6 +130,25 @@ impl Piece {
         piece
     }
 
+    /// The same piece somewhere else and at another time, if it leaves no boxes: `by` and then as much later.
+    pub fn moved(&self, domain: &Domain, by: Ground, ticks: i32) -> Self {
+        let turn = by.turn();
+        let shown_from = self.shown_from + ticks;
+        let bodies = self.bodies.iter().zip(shown_from..domain.horizon).filter(|(_, tick)| *tick >= 0);
+        let bodies = bodies.map(|(b, _)| Body { position: by.apply(b.position), turn: turn.then(b.turn), ..*b });
+        Self {
+            begin: self.begin + ticks,
+            end: self.end + ticks,
+            path: MotionPath {
+                points: self.path.points.iter().map(|&p| by.apply(p)).collect(),
+                headings: self.path.headings.iter().map(|h| h + by.heading).collect(),
+            },
+            shown_from: shown_from.max(0),
+            bodies: bodies.collect(),
+            ..*self
+        }
+    }
+
     /// Puts boxes where they lie before the piece begins and after it ends.
     fn lay_boxes(&mut self, source: &Role, horizon: i32) {
         let lying = |k: usize, ticks: i32| {

@@ -4,8 +4,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::gather::{Encores, Wish};
+use super::gather::Wish;
 use super::library::Library;
+use super::passage::{Passages, Way};
 
 /// Least and largest share of their time that people who stay together do so, about.
 const TOGETHER: [f32; 2] = [0.35, 0.85];
@@ -27,7 +28,7 @@ struct Record {
 /// What gatherings are to be like.
 pub(super) struct Plan<'a> {
     library: &'a Library<'a>,
-    encores: &'a Encores,
+    passages: &'a Passages<'a>,
     horizon: i32,
     records: Vec<Record>,
     rng: ChaCha8Rng,
@@ -35,18 +36,21 @@ pub(super) struct Plan<'a> {
 
 impl<'a> Plan<'a> {
     /// Nothing is known yet.
-    pub fn new(library: &'a Library<'a>, encores: &'a Encores, horizon: i32, seed: u64) -> Self {
+    pub fn new(library: &'a Library<'a>, passages: &'a Passages<'a>, horizon: i32, seed: u64) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         // Far from the streams of the crew, which count from zero.
         rng.set_stream(u64::MAX);
         let record = |&kind: &u32| Record { kind, tried: 0.0, made: 0.0 };
-        Self { library, encores, horizon, records: library.multi.iter().map(record).collect(), rng }
+        Self { library, passages, horizon, records: library.multi.iter().map(record).collect(), rng }
     }
 
     /// A gathering; `need` is the share of their time that those who are still to come must spend together on average.
     /// Kinds whose people cannot spend as much time together, or which seldom find room, are drawn the more seldom.
     pub fn draw(&mut self, need: f32) -> Wish {
         let weight = |r: &Record| {
+            if self.is_isolated(r.kind) {
+                return 0.0;
+            }
             let enough = (self.potential(r.kind) / (RESERVE * need)).min(1.0);
             enough * enough * (r.made + 0.5 * CREDIT) / (r.tried + CREDIT)
         };
@@ -60,7 +64,7 @@ impl<'a> Plan<'a> {
     }
 
     fn wish(&mut self, kind: u32, need: f32) -> Wish {
-        if !self.encores.is_sociable(kind) {
+        if !self.is_sociable(kind) {
             return Wish { kind, together: 0, least: 0 };
         }
         let least = TOGETHER[0].max(need.min(TOGETHER[1]));
@@ -68,11 +72,22 @@ impl<'a> Plan<'a> {
         Wish { kind, together: ticks(self.rng.random_range(least..=TOGETHER[1])), least: ticks(least * LEAST) }
     }
 
+    /// True if the people of a kind can stay together after it, as far as is known.
+    fn is_sociable(&self, kind: u32) -> bool {
+        self.passages.known(kind, Way::Stay).is_none_or(|known| !known.is_empty())
+    }
+
+    /// True if people are known to have no way to or from a kind.
+    fn is_isolated(&self, kind: u32) -> bool {
+        let none = |way| self.passages.known(kind, way).is_some_and(<[_]>::is_empty);
+        none(Way::Come) || none(Way::Part)
+    }
+
     /// The share of their time that people whose first patch is of a kind may spend together.
     fn potential(&self, kind: u32) -> f32 {
         let first = self.library.first_role[kind as usize] as usize;
         let own = self.library.roles[first].ticks as f32 / self.horizon as f32;
-        if self.encores.is_sociable(kind) { own.max(0.5 * (TOGETHER[0] + TOGETHER[1])) } else { own }
+        if self.is_sociable(kind) { own.max(0.5 * (TOGETHER[0] + TOGETHER[1])) } else { own }
     }
 
     /// Takes note of which gatherings came about.

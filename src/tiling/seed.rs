@@ -4,13 +4,14 @@ use glam::Vec2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::bridge::{NO_INSTANCE, Taste};
+use super::bridge::{NO_INSTANCE, STANDING_SPEED, Taste};
 use super::domain::Spot;
 use super::draft::Draft;
 use super::library::{Library, Move};
 use super::piece::{Company, Piece};
 use super::prefer::Stay;
 use super::source::lead_out;
+use super::tryout::is_clean;
 use crate::geom::Ground;
 
 /// Places tried for one person.
@@ -19,18 +20,18 @@ const PLACES: usize = 20;
 /// Adds a person who is at a random place of the domain at first, until the end of time or out; one who begins with a box in the hands,
 /// or by taking one up, if so wished.
 pub(super) fn seed_person(draft: &mut Draft, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
-    let first = (0..PLACES).find_map(|_| first_piece(draft, laden, rng))?;
+    let first = (0..PLACES).find_map(|_| first_piece(draft, laden, taste, rng))?;
     let exit = draft.base.library.exit_of(&first);
     let mut pieces = vec![draft.add(first)];
     pieces.extend(lead_out(draft, exit, Company::NONE, taste, rng)?);
     draft.push_track(pieces);
-    Some(())
+    is_clean(draft).then_some(())
 }
 
 /// A free patch of one person that is going on at tick 0.
-fn first_piece(draft: &Draft, laden: bool, rng: &mut ChaCha8Rng) -> Option<Piece> {
+fn first_piece(draft: &Draft, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Piece> {
     let (library, domain) = (draft.base.library, draft.base.domain);
-    let role = first_role(library, laden, rng);
+    let role = first_role(library, laden, taste, rng);
     let place = Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
     let heading = rng.random_range(-std::f32::consts::PI..std::f32::consts::PI);
     let lead = rng.random_range(0..library.roles[role as usize].ticks);
@@ -46,8 +47,9 @@ fn first_piece(draft: &Draft, laden: bool, rng: &mut ChaCha8Rng) -> Option<Piece
     draft.view().is_free(&first).then_some(first)
 }
 
-/// Any single-person role without a box; or with one, half of them roles that take it up, if there are such.
-fn first_role(library: &Library, laden: bool, rng: &mut ChaCha8Rng) -> u32 {
+/// Any single-person role without a box, the calmer the more often one of somebody who stands; or with a box, half of
+/// them roles that take it up, if there are such.
+fn first_role(library: &Library, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> u32 {
     let lifts = |m: &Move| library.roles[m.role as usize].rests[0].is_some() && library.laden[m.group as usize];
     let carries = |m: &Move| library.laden[library.roles[m.role as usize].entry_group as usize];
     let roles = |wanted: &dyn Fn(&Move) -> bool| -> Vec<u32> {
@@ -56,6 +58,9 @@ fn first_role(library: &Library, laden: bool, rng: &mut ChaCha8Rng) -> u32 {
     let wanted = match laden {
         true if rng.random_range(0..2) == 0 => roles(&lifts),
         true => roles(&carries),
+        false if rng.random_range(0.0..1.0) > taste.calm => {
+            roles(&|m| m.speed < STANDING_SPEED && !lifts(m) && !carries(m))
+        }
         false => roles(&|m| !lifts(m) && !carries(m)),
     };
     let wanted = if wanted.is_empty() { roles(&|_| true) } else { wanted };

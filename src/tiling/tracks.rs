@@ -1,8 +1,6 @@
 //! The state of the engine: every person is a track of pieces from the first tick to the last. It is a perfect tiling
 //! after every change, because changes are proposed whole (see [`Draft`](super::draft::Draft)) and taken or left.
 
-use std::ops::Range;
-
 use super::bake::Chains;
 use super::bridge::{NO_INSTANCE, Port};
 use super::domain::Domain;
@@ -81,10 +79,15 @@ impl Change {
 impl<'a> Tracks<'a> {
     /// No people yet.
     pub fn new(library: &'a Library<'a>, domain: &'a Domain) -> Self {
+        Self { occupancy: Occupancy::new(domain, library), ..Self::on_open_ground(library, domain) }
+    }
+
+    /// Where there never are people: only drafts.
+    pub fn on_open_ground(library: &'a Library<'a>, domain: &'a Domain) -> Self {
         Self {
             library,
             domain,
-            occupancy: Occupancy::new(domain, library),
+            occupancy: Occupancy::none(),
             tracks: vec![],
             owners: vec![],
             next_instance: 0,
@@ -268,11 +271,6 @@ impl<'a> Tracks<'a> {
     /// Place and heading of a person at a tick at which the person is there.
     pub fn state_at(&self, track: TrackId, tick: i32) -> Ground {
         self.piece(self.tracks[track][self.index_at(track, tick)]).state(tick)
-    }
-
-    /// The ticks that a window spans.
-    pub fn span(&self, window: Window) -> Range<i32> {
-        self.port(window.track, window.from).tick..self.port(window.track, window.to).tick
     }
 
     /// Index of the piece of a track that is in an instance.
