@@ -115,7 +115,11 @@ fn people_share_vertices_by_build_and_not_their_looks() {
     };
     assert_ne!(materials(0), materials(1));
     assert_ne!(look(0), look(1));
-    assert_eq!(glb.json["scenes"][0]["nodes"].as_array().unwrap().len(), 8, "a joint root and a mesh for each of four");
+    assert_eq!(
+        glb.json["scenes"][0]["nodes"].as_array().unwrap().len(),
+        9,
+        "a joint root and a mesh for each of four, and an obstacle"
+    );
     let knee = &glb.json["nodes"][glb.node("person_1_left_leg")]["translation"][1];
     assert!((knee.as_f64().unwrap() + 0.42 * 1.085).abs() < 1e-4, "{knee}");
 }
@@ -216,4 +220,30 @@ fn builds_are_kept_in_the_crowd_file_and_files_without_them_are_of_canonical_peo
     assert!(missing.contains("character 1") && missing.contains("below 4, found 9"), "{missing}");
     let bent = told(&|h| h["builds"][2]["offsets"][2][1] = (-9.0).into());
     assert!(bent.contains("left_leg") && bent.contains("slight"), "{bent}");
+}
+
+#[test]
+fn obstacles_are_where_they_are() {
+    use crowdquilt::geom::{Obstacle, Polygon, Waypoint};
+    use glam::Vec2;
+    let mut crowd = crowd();
+    let at = |secs: f32, x: f32, heading: f32| Waypoint { secs, position: Vec2::new(x, 1.0), heading };
+    let outline = Polygon::rectangle(Vec2::new(-0.5, -0.2), Vec2::new(0.5, 0.2));
+    let path = vec![at(0.5, -2.0, 0.0), at(2.0, 3.0, 1.5)];
+    crowd.domain.obstacles.push(Obstacle { outline, height: Some(0.25), path });
+    let cart = &crowd.domain.obstacles[1];
+    let glb = Glb::open(&glb(&crowd));
+    let (times, places, _) = glb.channel("obstacle_1", "translation").unwrap();
+    let (_, turns, _) = glb.channel("obstacle_1", "rotation").unwrap();
+    for secs in [0.0, 0.9, 1.4, 1.9] {
+        let (i, j, t) = sample(&times, secs);
+        let place = Vec3::from_slice(&places[i * 3..]).lerp(Vec3::from_slice(&places[j * 3..]), t);
+        let turn =
+            Quat::from_slice(&turns[i * 4..]).normalize().slerp(Quat::from_slice(&turns[j * 4..]).normalize(), t);
+        let expected = cart.place(secs);
+        assert!(place.distance(Vec3::new(expected.position.x, 0.0, expected.position.y)) < 1e-3, "{secs}: {place}");
+        assert!(turn.angle_between(expected.rotation()) < 1e-3, "{secs}: {turn}");
+    }
+    // One that stands has its two keys at most.
+    assert!(glb.channel("obstacle_0", "translation").is_none_or(|(times, ..)| times.len() <= 2));
 }

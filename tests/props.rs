@@ -107,6 +107,8 @@ fn hand_over(tone: usize) -> Crowd {
     let domain = DomainInfo {
         region: Polygon::rectangle(Vec2::splat(-6.0), Vec2::splat(6.0)),
         obstacles: vec![],
+        sources: vec![],
+        sinks: vec![],
         last_frame: last as u32,
         periodic: Default::default(),
     };

@@ -149,3 +149,84 @@ fn tiles_that_repeat_have_no_seam() {
         assert_eq!(outcome.crowd.domain.periodic, load(name).periodic);
     }
 }
+
+#[test]
+fn people_come_in_at_sources_and_go_out_at_sinks() {
+    let scene = load("sources");
+    let outcome = clean("sources", 1);
+    assert_eq!(outcome.status, Status::Perfect);
+    let crowd = outcome.crowd;
+    assert_eq!(crowd.characters.len(), scene.people());
+    let coming: usize = scene.sources.iter().map(|s| s.times.len()).sum();
+    let late = || crowd.characters.iter().filter(|c| c.begin > 0);
+    let gone = crowd.characters.iter().filter(|c| c.end() < crowd.domain.last_frame).count();
+    println!("{} come in, {gone} go out", late().count());
+    assert_eq!(late().count(), coming);
+    assert!(gone > coming / 3, "{gone}");
+    for c in late() {
+        let frame = scene.sources.iter().flat_map(|s| &s.times).any(|t| (t * FPS).round() as u32 == c.begin);
+        assert!(frame, "nobody was to come at frame {}", c.begin);
+    }
+    // Elsewhere they would dangle.
+    let mut moved = crowd;
+    for gate in moved.domain.sources.iter_mut().chain(&mut moved.domain.sinks) {
+        *gate = crowdquilt::geom::Gate { from: Vec2::splat(6.0), to: Vec2::splat(6.0), ..gate.clone() };
+    }
+    let report = check(&moved);
+    let row = report.failures().find(|r| r.row == "dangling ports").expect("they dangle");
+    assert_eq!(row.value as usize, coming + gone);
+}
+
+#[test]
+fn teams_line_up_and_bump_only_opponents() {
+    let scene = load("hopping");
+    let outcome = clean("hopping", 1);
+    assert_eq!(outcome.status, Status::Perfect);
+    let crowd = &outcome.crowd;
+    assert_eq!(crowd.characters.len(), 30);
+    let team = |c: &crowdquilt::stage::Character| {
+        let first = c.fragments[0].points[0];
+        scene.teams.iter().position(|t| t.start.signed_distance(first) <= 0.0).expect("in the place of a team")
+    };
+    let teams: Vec<usize> = crowd.characters.iter().map(team).collect();
+    assert_eq!(teams.iter().filter(|&&t| t == 0).count(), 15);
+    let mut bumps = 0;
+    for i in 0..crowd.instances.len() {
+        let kind = &crowd.set.kinds[crowd.instances[i].kind as usize];
+        assert!(kind.labels.iter().any(|l| l == "hop"), "{}", kind.name);
+        let plays = |c: usize| crowd.characters[c].fragments.iter().any(|f| f.instance as usize == i);
+        let who: Vec<usize> = (0..30).filter(|&c| plays(c)).collect();
+        if kind.people() == 2 {
+            assert_ne!(teams[who[0]], teams[who[1]], "fellows bump at instance {i}");
+            bumps += 1;
+        }
+    }
+    println!("{bumps} bumps");
+    assert!(bumps > 10, "{bumps}");
+    // Nobody hops where nobody asked for it.
+    assert!(clean("static-1", 2).crowd.set.kinds.iter().all(|k| k.labels.iter().all(|l| l != "hop")));
+}
+
+#[test]
+fn box_movers_are_busy_with_boxes() {
+    let outcome = clean("boxes", 1);
+    assert_eq!(outcome.status, Status::Perfect);
+    let crowd = &outcome.crowd;
+    let (mut busy, mut all) = (0, 0);
+    let mut kinds = std::collections::BTreeSet::new();
+    for f in crowd.characters.iter().flat_map(|c| &c.fragments) {
+        let kind = &crowd.set.kinds[crowd.instances[f.instance as usize].kind as usize];
+        all += f.end - f.begin;
+        if kind.labels.iter().any(|l| l == "carry" || l == "sit") {
+            busy += f.end - f.begin;
+            kinds.insert(kind.name.trim_end_matches("-mirror"));
+        }
+    }
+    println!(
+        "{} kinds with boxes, {:.2} of the time, {} boxes",
+        kinds.len(),
+        busy as f32 / all as f32,
+        crowd.props.len()
+    );
+    assert!(kinds.len() >= 12 && 3 * busy > all && crowd.props.len() > 10, "{kinds:?}, {busy} of {all}");
+}

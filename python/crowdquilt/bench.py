@@ -16,7 +16,7 @@ from rich.table import Table
 
 from crowdquilt import motion, patch, refine, samples
 from crowdquilt._core import PatchSet, Scene, measure_patches, measure_poses, measure_replay, measure_street, tile
-from crowdquilt.bench_tiling import PAPER, STATIC, growth, repeating, static
+from crowdquilt.bench_tiling import EXAMPLES, PAPER, STATIC, example, growth, repeating, static
 
 Say = Callable[[str], None]
 
@@ -46,6 +46,7 @@ def tiling(seeds: int, say: Say) -> list[Row]:
         samples.write(Path(folder), 1)
         patches = patch.cut(Path(folder))
     figures = [figure for scene in STATIC for figure in static(scene, patches, seeds, say)]
+    figures += [figure for scene in EXAMPLES for figure in example(scene, patches, seeds, say)]
     figures += repeating(patches, seeds, say)
     figures += growth(patches, say)
     kinds = row("tiling", "kinds to choose from", len(patches), "", 43, PAPER)

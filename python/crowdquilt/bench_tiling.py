@@ -1,9 +1,10 @@
-"""The rows of `crowdquilt bench tiling`: the paper's static scenes, denser and larger ones, its Algorithms 1 and 2."""
+"""The rows of `crowdquilt bench tiling`: the paper's scenes, denser and larger ones, its Algorithms 1 and 2."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from statistics import median
 
 from crowdquilt import check
@@ -52,6 +53,26 @@ BASELINE = ("static-173", "static-374", "static-490")
 
 
 @dataclass(frozen=True)
+class Example:
+    """A scene of `examples/scenes`; the paper's patches, characters and seconds where it tells them."""
+
+    row: str
+    patches: float | None = None
+    people: float | None = None
+    secs: float | None = None
+
+
+EXAMPLES = (
+    Example("dynamic", 528, 66, 97 * 60),
+    Example("sources"),
+    Example("hopping", None, 30, 7 * 60),
+    Example("boxes", 526, 36, 6.5 * 60),
+)
+SCENES = Path(__file__).resolve().parents[2] / "examples" / "scenes"
+BOX_LABELS = {"carry", "sit"}
+
+
+@dataclass(frozen=True)
 class Run:
     """One crowd, checked."""
 
@@ -94,7 +115,37 @@ def static(scene: Static, patches: PatchSet, seeds: int, say: Say) -> list[Figur
     return figures
 
 
-def figures_of(scene: Static, made: list[Run], prefix: str) -> list[Figure]:
+def example(scene: Example, patches: PatchSet, seeds: int, say: Say) -> list[Figure]:
+    """The figures of an example scene; none where the repository's examples are not at hand."""
+    file = SCENES / f"{scene.row}.toml"
+    if not file.exists():
+        say(f"tiling: {scene.row}: skipped, {file} is not there")
+        return []
+    made = runs(Scene.load(file), patches, seeds)
+    figures = figures_of(scene, made, "")
+    if scene.row == "hopping":
+        figures.append(Figure(scene.row, "bumps, fewest", min(instances_with(r.outcome, {"bump"}) for r in made)))
+    if scene.row == "boxes":
+        figures.append(Figure(scene.row, "boxes, fewest", min(r.summary.props for r in made)))
+        kinds = (len(kinds_with(r.outcome, BOX_LABELS)) for r in made)
+        figures.append(Figure(scene.row, "kinds with boxes, fewest", min(kinds), "", 16))
+    say(f"tiling: {scene.row}: {figures[0].value:.2f} s, {sum(r.ok for r in made)} of {seeds} perfect and checked")
+    return figures
+
+
+def instances_with(outcome: Outcome, labels: set[str]) -> int:
+    """How many placed patches have one of some labels."""
+    kinds = outcome.crowd.kinds
+    return sum(bool(labels & set(kinds[kind].labels)) for kind in outcome.crowd.instances)
+
+
+def kinds_with(outcome: Outcome, labels: set[str]) -> set[str]:
+    """The kinds in use that have one of some labels; mirror images count once."""
+    used = (outcome.crowd.kinds[kind] for kind in set(outcome.crowd.instances.tolist()))
+    return {kind.name.removesuffix("-mirror") for kind in used if labels & set(kind.labels)}
+
+
+def figures_of(scene: Static | Example, made: list[Run], prefix: str) -> list[Figure]:
     """What is told of a scene's runs."""
 
     def figure(name: str, value: float, unit: str = "", reference: float | None = None) -> Figure:

@@ -1,10 +1,16 @@
-//! Clause 1: everybody present begins at the first frame or earlier and ends at the last or later (time is cropped,
-//! space is closed), chains stitch like to like, and every role of every patch has its one player.
+//! Clause 1: everybody present begins at the first frame or earlier, or later at a source, and ends at the last or later,
+//! or earlier at a sink (time is cropped, space is closed), chains stitch like to like, and every role of every patch has its one player.
 
 use super::part::Part;
 use super::report::{Faults, Row};
+use crate::geom::{Gate, Ground};
 use crate::motion::JOINT_COUNT;
-use crate::stage::{Character, Crowd, Holding, Prop};
+use crate::stage::{Character, Crowd, DomainInfo, FragmentUse, Holding, Prop};
+
+/// Farthest from a source or a sink that somebody comes in or goes out, metres: bodies must be inside of the border.
+const GATE_REACH: f32 = 0.75;
+/// Headings may be beyond a gate's spread by this much, radians: rounding.
+const GATE_TURN: f32 = 0.01;
 
 /// More than a year of motion; keeps the arithmetic of frames far from overflow.
 const LAST_FRAME: u32 = 1 << 30;
@@ -87,16 +93,17 @@ pub(super) fn rows(crowd: &Crowd, parts: &[Part]) -> Vec<Row> {
     ]
 }
 
-/// Entries after the first frame and exits before the last.
+/// Entries after the first frame but at a source, and exits before the last but at a sink.
 pub(super) fn danglings(crowd: &Crowd) -> Faults {
     let mut faults = Faults::default();
+    let DomainInfo { sources, sinks, .. } = &crowd.domain;
     for (c, character) in crowd.characters.iter().enumerate() {
         match (character.fragments.first(), character.fragments.last()) {
             (Some(first), Some(last)) => {
-                if first.begin > 0 {
+                if first.begin > 0 && !is_at(crowd, sources, first, Side::Entry) {
                     faults.add(|| format!("character {c}: entry at frame {}", first.begin));
                 }
-                if last.end < crowd.domain.last_frame as i32 {
+                if last.end < crowd.domain.last_frame as i32 && !is_at(crowd, sinks, last, Side::Exit) {
                     faults.add(|| format!("character {c}: exit at frame {}", last.end));
                 }
             }
@@ -104,6 +111,31 @@ pub(super) fn danglings(crowd: &Crowd) -> Faults {
         }
     }
     faults
+}
+
+/// An end of a fragment.
+#[derive(Clone, Copy, PartialEq)]
+enum Side {
+    Entry,
+    Exit,
+}
+
+/// True if an end of a fragment is at one of some gates, looks as people there look and is in their pose.
+fn is_at(crowd: &Crowd, gates: &[Gate], used: &FragmentUse, side: Side) -> bool {
+    let kind = crowd.instances.get(used.instance as usize).and_then(|i| crowd.set.kinds.get(i.kind as usize));
+    let Some(source) = kind.and_then(|kind| kind.fragments.get(used.role as usize)) else { return false };
+    let (sample, group) = match side {
+        Side::Entry => (0, source.entry_group),
+        Side::Exit => (used.points.len() - 1, source.exit_group),
+    };
+    let at = Ground::new(used.points[sample], used.headings[sample]);
+    let pose = crowd.set.groups.get(group as usize).map(|g| &g.name);
+    let fits = |gate: &Gate| {
+        gate.distance(at.position) <= GATE_REACH
+            && gate.turned_away(at) <= GATE_TURN
+            && (gate.group.is_none() || gate.group.as_ref() == pose)
+    };
+    gates.iter().any(fits)
 }
 
 fn unlike_stitches(parts: &[Part]) -> Faults {

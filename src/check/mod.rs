@@ -5,7 +5,7 @@
 //!
 //! | clause | what | file |
 //! |---|---|---|
-//! | 1 | chains of fragments begin and end at the borders of the domain's time, every role is played once | `chain.rs` |
+//! | 1 | chains of fragments begin and end at the borders of the domain's time or at a source and a sink, every role is played once | `chain.rs` |
 //! | 2 | stitches are closed, no joint turns or moves faster than in the captures, the path is what is seen | `stitch.rs`, `speed.rs` |
 //! | 3 | the deformation of every source frame is within its limits | `deformation.rs` |
 //! | 4, 7 | bodies stay apart, inside the region and out of obstacles | `bodies.rs`, `depth.rs`, `obstacle.rs` |

@@ -164,6 +164,8 @@ mod tests {
         let domain = |points: [(f32, f32); 3]| DomainInfo {
             region: Polygon::rectangle(Vec2::splat(-3.0), Vec2::splat(3.0)),
             obstacles: vec![Polygon::new(points.map(|(x, z)| Vec2::new(x, z)).to_vec()).unwrap().into()],
+            sources: vec![],
+            sinks: vec![],
             last_frame: 0,
             periodic: crate::geom::Periodic::default(),
         };

@@ -16,7 +16,7 @@ pub struct Summary {
     pub multi_person_share: f64,
     /// Boxes that people carry, or that lie there.
     pub props: usize,
-    /// Entries after the first frame and exits before the last.
+    /// Entries after the first frame but at a source, and exits before the last but at a sink.
     pub danglings: usize,
 }
 

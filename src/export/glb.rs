@@ -5,7 +5,8 @@
 //! scale is keyed to 0, which hides the mesh, since a skinned mesh follows its joints alone. The mesh node
 //! `person_N_body` is at the root of the scene too, as viewers want it. Vertices and inverse bind matrices are shared by
 //! people of one build, triangles and key times by all. Boxes are nodes `box_N` at the root of the scene, with
-//! `extras: { box, size }`, hidden in the same way while they are not there.
+//! `extras: { box, size }`, hidden in the same way while they are not there; obstacles are nodes `obstacle_N` with
+//! `extras: { obstacle, height }`.
 
 use gltf_json::{Asset, Index, Root, Scene};
 
@@ -15,6 +16,7 @@ use super::body::Wardrobe;
 use super::boxes;
 use super::buffer::assemble;
 use super::look::dealt;
+use super::obstacles;
 use crate::motion::JOINT_COUNT;
 use crate::stage::{Character, Crowd};
 
@@ -40,6 +42,7 @@ pub fn glb_with(crowd: &Crowd, avatars: &[Avatar]) -> Vec<u8> {
     } else {
         let grafts: Vec<Graft> = avatars.iter().map(|a| a.graft(&mut root, &mut binary)).collect();
         let meshes = boxes::meshes(&mut root, &mut binary, crowd);
+        let blocks = obstacles::meshes(&mut root, &mut binary, crowd);
         let mut writer = Writer::new(root, crowd.domain.last_frame);
         for (person, character) in people {
             let number = dealt(person, AVATAR_SALT, avatars.len());
@@ -47,6 +50,7 @@ pub fn glb_with(crowd: &Crowd, avatars: &[Avatar]) -> Vec<u8> {
             writer.person(person, character, &bones, &grafts[number].dresses, &keys);
         }
         boxes::write(&mut writer, crowd, &meshes);
+        obstacles::write(&mut writer, crowd, &blocks);
         writer.finish(binary)
     }
 }
@@ -59,12 +63,14 @@ fn mannequins(crowd: &Crowd, people: &[(usize, &Character)], mut root: Root, mut
     let numbers: Vec<(usize, usize)> = people.iter().map(|&(person, _)| (person, own[person])).collect();
     let wardrobe = Wardrobe::new(&mut root, &mut binary, &builds, &numbers);
     let meshes = boxes::meshes(&mut root, &mut binary, crowd);
+    let blocks = obstacles::meshes(&mut root, &mut binary, crowd);
     let mut writer = Writer::new(root, crowd.domain.last_frame);
     for &(person, character) in people {
         let (bones, dress) = (wardrobe.bones(own[person]), wardrobe.dress(person, own[person]));
         writer.person(person, character, bones, &[dress], &keys(character));
     }
     boxes::write(&mut writer, crowd, &meshes);
+    obstacles::write(&mut writer, crowd, &blocks);
     writer.finish(binary)
 }
 

@@ -15,6 +15,7 @@ mod glb;
 mod loft;
 mod look;
 mod mannequin;
+mod obstacles;
 mod shape;
 mod skinning;
 

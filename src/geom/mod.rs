@@ -3,6 +3,7 @@
 mod capsule;
 pub mod complex;
 mod cuboid;
+mod gate;
 mod ground;
 mod obstacle;
 mod polygon;
@@ -10,6 +11,7 @@ mod torus;
 
 pub use capsule::Capsule;
 pub use cuboid::{Cuboid, Upright};
+pub use gate::Gate;
 pub use ground::{Ground, Turn, wrap_angle};
 pub use obstacle::{Obstacle, Waypoint};
 pub use polygon::Polygon;

@@ -14,7 +14,7 @@ use super::timeline::Span;
 use crate::geom::Ground;
 use crate::motion::{FPS, Foot};
 
-const NEVER: f32 = 1e6;
+pub(super) const NEVER: f32 = 1e6;
 
 /// Seconds at `frame`.
 pub(super) fn secs(frame: i32) -> f32 {
@@ -39,6 +39,10 @@ pub(super) struct Actor {
     anchor: (i32, Ground),
     pub walking: Option<(Foot, Gait)>,
     pub flights: Vec<Flight>,
+    /// On one leg: the foot that hops.
+    pub hopping: Option<Foot>,
+    /// Legs that are held up, and when.
+    pub held_legs: Vec<(Foot, Span)>,
     /// Whether a box is in the hands, which makes other pose groups.
     pub carrying: bool,
 }
@@ -72,6 +76,8 @@ impl Actor {
             anchor: (0, Ground::IDENTITY),
             walking: None,
             flights: Vec::new(),
+            hopping: None,
+            held_legs: Vec::new(),
             carrying: false,
         };
         actor.mark();
@@ -84,10 +90,12 @@ impl Actor {
 
     /// Marks a port at the cursor.
     pub fn mark(&mut self) {
-        let pose = match self.walking {
-            None => "stand",
-            Some((Foot::Left, _)) => "walk_left",
-            Some((Foot::Right, _)) => "walk_right",
+        let pose = match (self.hopping, self.walking) {
+            (Some(Foot::Left), _) => "hop_left",
+            (Some(Foot::Right), _) => "hop_right",
+            (None, None) => "stand",
+            (None, Some((Foot::Left, _))) => "walk_left",
+            (None, Some((Foot::Right, _))) => "walk_right",
         };
         let pose = if self.carrying { format!("carry_{pose}") } else { pose.to_owned() };
         if self.ports.last().is_none_or(|p| p.0 != self.now) {

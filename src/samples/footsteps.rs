@@ -195,7 +195,7 @@ impl Feet {
     }
 }
 
-fn pitched(yaw: f32, pitch: f32) -> Quat {
+pub(super) fn pitched(yaw: f32, pitch: f32) -> Quat {
     Quat::from_rotation_y(yaw) * Quat::from_rotation_x(-pitch)
 }
 

@@ -1,7 +1,7 @@
 //! Generated sample captures: what Crowdquilt works on when it is given nothing else.
 //!
 //! Each take is planned as a performance (`actor`): a root `path`, `footsteps` on it, and `gesture`s and
-//! posture pulses over time (`acting`), `flight`s. `perform` turns a plan into motion with the `gait` curves of gait analysis and
+//! posture pulses over time (`acting`), `flight`s, `hopping`. `perform` turns a plan into motion with the `gait` curves of gait analysis and
 //! inverse kinematics, and `scene` adds the ground truth: foot plants, contacts, ports, patches, props.
 
 mod acting;
@@ -10,6 +10,7 @@ mod flight;
 mod footsteps;
 mod gait;
 mod gesture;
+mod hopping;
 mod path;
 mod perform;
 mod posture;

@@ -9,6 +9,7 @@ use super::actor::{Actor, secs};
 use super::footsteps::{Base, FootPose};
 use super::gait::{GaitPose, gait_pose};
 use super::gesture::{hanging, set_arm};
+use super::hopping::{held_foot, held_share};
 use super::path::Path;
 use super::posture::{Body, Channel, Channels, side_sign};
 use super::timeline::{Span, Wander, blur, lerp, signed, unit};
@@ -104,10 +105,12 @@ fn prepare(actor: &Actor, path: &Path, end: i32) -> Vec<Frame> {
     let times: Vec<f32> = (0..count).map(|i| i as f32 / RATE as f32).collect();
     let share = |t: f32| {
         let [left, right] = [actor.feet[0].load(t), actor.feet[1].load(t)];
-        if left + right < 1e-3 { 0.5 } else { left / (left + right) }
+        held_share(actor, t, if left + right < 1e-3 { 0.5 } else { left / (left + right) })
     };
     let shares = blur(&times.iter().map(|&t| share(t)).collect::<Vec<_>>(), 0.055 * RATE as f32);
-    let speeds = blur(&times.iter().map(|&t| path.speed(t)).collect::<Vec<_>>(), 0.10 * RATE as f32);
+    // Who hops does not walk.
+    let walked = |t: f32| if actor.held_legs.is_empty() { path.speed(t) } else { 0.0 };
+    let speeds = blur(&times.iter().map(|&t| walked(t)).collect::<Vec<_>>(), 0.10 * RATE as f32);
     let mut frames: Vec<Frame> =
         times.iter().zip(&shares).zip(speeds).map(|((&t, _), speed)| prepare_frame(actor, path, t, speed)).collect();
     let sways: Vec<f32> = frames.iter().zip(shares).map(|(f, share)| sway(f, path.at(f.t), share)).collect();
@@ -133,7 +136,6 @@ fn prepare_frame(actor: &Actor, path: &Path, t: f32, speed: f32) -> Frame {
     let gait = gait_pose(actor.phase.at(t), speed);
     let lifts = [channels[Channel::HeelUpLeft], channels[Channel::HeelUpRight]];
     let at = path.at(t);
-    let feet = [0, 1].map(|i| actor.feet[i].pose(t, lifts[i], at));
     let local = Vec2::new(channels[Channel::HipsLeft], channels[Channel::HipsForward]);
     let pelvis = Quat::from_rotation_y(at.heading + gait.pelvis_yaw + channels[Channel::PelvisYaw])
         * Quat::from_rotation_x(0.035 + gait.pelvis_pitch + channels[Channel::PelvisPitch])
@@ -141,6 +143,7 @@ fn prepare_frame(actor: &Actor, path: &Path, t: f32, speed: f32) -> Frame {
     let flown: f32 = actor.flights.iter().map(|f| f.height(t)).sum();
     let walks = 1.0 - actor.flights.iter().map(|f| Span(f.times).weight(t)).sum::<f32>();
     let height = HIPS_HEIGHT - gait.drop * walks + channels[Channel::HipsUp] + flown;
+    let feet = [0, 1].map(|i| held_foot(actor, i, t, at, height, actor.feet[i].pose(t, lifts[i], at)));
     let airborne = actor.flights.iter().map(|f| f.airborne(t)).sum();
     Frame { t, channels, gait, speed, feet, pelvis, hips: at.apply(local), height, airborne }
 }
@@ -221,7 +224,9 @@ fn yaw_of(q: Quat) -> f32 {
 fn gaze(actor: &Actor, paths: &[Path], me: usize, f: &Frame) -> (f32, f32) {
     let path = &paths[me];
     let at = path.at(f.t);
-    let ahead = (path.at(f.t + 0.35).heading - at.heading).clamp(-0.6, 0.6);
+    // Who turns in one hop looks there later than who turns in two steps.
+    let soon = if actor.held_legs.is_empty() { 0.35 } else { 0.2 };
+    let ahead = (path.at(f.t + soon).heading - at.heading).clamp(-0.6, 0.6);
     let (mut yaw, mut pitch) = (ahead, 0.05);
     for (span, sight) in &actor.gazes {
         let weight = span.weight(f.t);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{Quat, Vec2, Vec3};
 
 use super::Prop;
-use crate::geom::{Obstacle, Periodic, Polygon, Torus};
+use crate::geom::{Gate, Obstacle, Periodic, Polygon, Torus};
 use crate::motion::{Build, FPS, JOINT_COUNT, Skeleton};
 use crate::patch::PatchSet;
 
@@ -16,6 +16,12 @@ pub struct DomainInfo {
     pub region: Polygon,
     /// Everybody stays out.
     pub obstacles: Vec<Obstacle>,
+    /// Where people may come in after the first frame.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sources: Vec<Gate>,
+    /// Where they may go out before the last.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sinks: Vec<Gate>,
     /// The crowd lives from frame 0 to this frame, inclusive; the time is open at both ends (cropped), unless it repeats:
     /// then this frame is the first one again.
     pub last_frame: u32,

@@ -2,7 +2,8 @@
 //!
 //! Header: `fps`, `seed`, `skeleton` (joints with name, parent, offset, tip), `domain` (region, obstacles: `points`,
 //! and if they are low or move `height` and `path`, way-points of `secs`, `position`, `heading` about which the points
-//! are; `last_frame`), `instances` (kind), `set` (the patch set's header, see [`crate::patch`]), `builds` (name; `offsets`: x, y,
+//! are; `sources` and `sinks`, if there are such: `from`, `to`, `heading`, `spread`, `group` of where people may come in
+//! and go out; `last_frame`), `instances` (kind), `set` (the patch set's header, see [`crate::patch`]), `builds` (name; `offsets`: x, y,
 //! z per joint, which stand in for the skeleton's; `flesh`: how a body's surface around each joint differs from the
 //! canonical body's: scale x, y, z about the joint in the rest pose, shift forward) and `characters`: each has `begin`
 //! (first frame), `frames`, `build` (index), and `fragments` (instance, role, begin, end, `samples` = number of path
@@ -150,6 +151,10 @@ impl Crowd {
         }
         if let Some(problem) = repeat_problem(&header.domain, props.len()) {
             return Err(Error::invalid("crowd", "domain", problem));
+        }
+        let gates = header.domain.sources.iter().chain(&header.domain.sinks);
+        if let Some((i, problem)) = gates.enumerate().find_map(|(i, g)| Some((i, g.problem()?))) {
+            return Err(Error::invalid("crowd", format!("source or sink {i}"), problem));
         }
         let crowd =
             Self { seed: header.seed, domain: header.domain, set, instances: header.instances, characters, props };

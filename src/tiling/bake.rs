@@ -143,6 +143,8 @@ pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, played: Performance
     let domain = DomainInfo {
         region: scene.region.clone(),
         obstacles: scene.obstacles.clone(),
+        sources: scene.sources.iter().map(|s| s.gate.clone()).collect(),
+        sinks: scene.sinks.iter().map(|s| s.gate.clone()).collect(),
         last_frame: scene.last_frame() as u32,
         periodic: scene.periodic,
     };

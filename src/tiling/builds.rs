@@ -17,6 +17,7 @@ use super::boxes::depth_in;
 use super::domain::Spot;
 use super::faults::is_rushed;
 use super::figure::{Figure, Places, REACH, TOLERANCE};
+use super::torsos::{Meeting, meetings};
 use crate::geom::Cuboid;
 use crate::motion::{Build, canonical};
 use crate::refine::{Body, Hold, Segment, fit, holds};
@@ -34,7 +35,8 @@ pub(super) fn people(chains: Chains, bodies: &[Body], props: &[Prop], seed: u64)
     let mut fitting = Fitting::begin(chains, bodies, props, seed);
     let mut changed = vec![true; bodies.len()];
     while changed.contains(&true) {
-        let clashes = fitting.clashes(&changed);
+        let mut clashes = fitting.clashes(&changed);
+        clashes.extend(fitting.missed(&changed));
         let bumps = fitting.bumps(&changed);
         changed = fitting.giving_way(&clashes);
         bumps.into_iter().for_each(|p| changed[p] |= fitting.worn[p].tone + 1 < TONES);
@@ -51,6 +53,7 @@ struct Fitting<'a> {
     /// Everybody's motion with a canonical body.
     bodies: &'a [Body],
     holds: Vec<Vec<Hold>>,
+    meetings: Vec<Meeting>,
     /// Everybody's build, an index into the catalogue.
     dealt: Vec<usize>,
     worn: Vec<Worn>,
@@ -66,7 +69,8 @@ impl<'a> Fitting<'a> {
     fn begin(chains: Chains<'a>, bodies: &'a [Body], props: &'a [Prop], seed: u64) -> Self {
         let people = 0..bodies.len();
         let holds = people.clone().into_par_iter().map(|p| holds_of(chains, p, &bodies[p])).collect();
-        let mut out = Self { chains, props, bodies, holds, dealt: deal(bodies.len(), seed), worn: vec![] };
+        let meetings = meetings(chains);
+        let mut out = Self { chains, props, bodies, holds, meetings, dealt: deal(bodies.len(), seed), worn: vec![] };
         out.worn = people.into_par_iter().map(|p| out.dress(p, 0)).collect();
         out
     }
@@ -146,6 +150,18 @@ impl<'a> Fitting<'a> {
         all.sort_unstable();
         all.dedup();
         all
+    }
+
+    /// The pairs, one or both of them changed, whose torsos no longer meet.
+    fn missed(&self, changed: &[bool]) -> Vec<(usize, usize)> {
+        let missed = |m: &&Meeting| {
+            m.people.iter().any(|&p| changed[p])
+                && m.is_missed(
+                    m.people.map(|p| (&self.worn[p].body, &self.build(p).skeleton)),
+                    m.people.map(|p| (&self.bodies[p], canonical())),
+                )
+        };
+        self.meetings.iter().filter(missed).map(|m| (m.people[0], m.people[1])).collect()
     }
 
     fn is_clash(&self, (p, a): (usize, &Figure), (q, b): (usize, &Figure), tick: i32) -> bool {

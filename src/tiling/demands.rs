@@ -9,6 +9,9 @@ use crate::{Error, Result};
 /// Label of kinds that are for jumping over something.
 const JUMP: &str = "jump";
 
+/// Label of what is done on one leg: for scenes that ask for it.
+const HOP: &str = "hop";
+
 /// Label of kinds that are only used where a scene has placed them.
 const STAGED: &str = "staged";
 
@@ -22,7 +25,9 @@ pub(super) fn admitted<'a>(scene: &Scene, set: &'a PatchSet, method: Method) -> 
     known(scene, set)?;
     let used = |kind: &PatchKind| {
         let placed = scene.placed.iter().any(|p| p.kind == kind.name);
-        let wanted = scene.kinds.lets_pass(&kind.labels) && (!has(kind, JUMP) || may_jump(scene)) && !has(kind, STAGED);
+        let jumps = !has(kind, JUMP) || may_jump(scene);
+        let hops = !has(kind, HOP) || is_asked_for(scene, HOP);
+        let wanted = scene.kinds.lets_pass(&kind.labels) && jumps && hops && !has(kind, STAGED);
         (placed || wanted) && (scene.periodic.none() || repeat::can_repeat(kind))
     };
     if set.kinds.iter().all(used) {
@@ -43,17 +48,22 @@ fn has(kind: &PatchKind, label: &str) -> bool {
 /// People jump where there is something to jump over, or where they are told to.
 fn may_jump(scene: &Scene) -> bool {
     let over = scene.obstacles.iter().any(|o| o.height.is_some());
-    over || scene.kinds.only.iter().map(String::as_str).chain(scene.preference.labels()).any(|l| l == JUMP)
+    over || is_asked_for(scene, JUMP)
+}
+
+/// True if a scene names a label as one that it uses or prefers.
+fn is_asked_for(scene: &Scene, label: &str) -> bool {
+    scene.kinds.only.iter().map(String::as_str).chain(scene.preference.labels()).any(|l| l == label)
 }
 
 /// Refuses what the method cannot do.
 fn possible(scene: &Scene, method: Method) -> Result<()> {
     let asked = [
-        ("source", !scene.sources.is_empty()),
-        ("sink", !scene.sinks.is_empty()),
+        ("source", method == Method::Paper && !scene.sources.is_empty()),
+        ("sink", method == Method::Paper && !scene.sinks.is_empty()),
         ("place", method == Method::Paper && !scene.placed.is_empty()),
-        ("team", !scene.teams.is_empty()),
-        ("rivals", !scene.rivals.is_empty()),
+        ("team", method == Method::Paper && !scene.teams.is_empty()),
+        ("rivals", method == Method::Paper && !scene.rivals.is_empty()),
         ("periodic", method == Method::Paper && scene.periodic.any()),
     ];
     let name = match method {
@@ -78,6 +88,13 @@ fn known(scene: &Scene, set: &PatchSet) -> Result<()> {
         let problem = format!("expected a label of the patch set ({}), found {label:?}", labels.join(", "));
         return Err(Error::invalid("scene", place, problem));
     }
+    let gates = scene.sources.iter().map(|s| ("source", &s.gate)).chain(scene.sinks.iter().map(|s| ("sink", &s.gate)));
+    let unknown = |g: &str| set.groups.iter().all(|known| known.name != g);
+    if let Some((place, group)) = gates.filter_map(|(k, g)| Some((k, g.group.as_ref()?))).find(|(_, g)| unknown(g)) {
+        let names: Vec<&str> = set.groups.iter().map(|g| g.name.as_str()).collect();
+        let problem = format!("expected a pose group of the patch set ({}), found {group:?}", names.join(", "));
+        return Err(Error::invalid("scene", place, problem));
+    }
     let people = |name: &str| set.kinds.iter().find(|k| k.name == name).map(PatchKind::people);
     if let Some(alone) = scene.placed.iter().find(|p| people(&p.kind) == Some(1)) {
         let problem = format!("expected a kind of two people or more, found {:?} of one", alone.kind);
@@ -95,7 +112,9 @@ fn known(scene: &Scene, set: &PatchSet) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tiling::{Form, Periodic, Preference, Term};
+    use crate::geom::Gate;
+    use crate::tiling::{Form, Periodic, Preference, Sink, Term};
+    use glam::Vec2;
 
     fn set() -> PatchSet {
         let kind = |name: &str, label: &str| PatchKind {
@@ -129,6 +148,12 @@ mod tests {
         let form = Form::Ratios(vec![("hug".into(), 2.0)]);
         let preference = Preference { terms: vec![Term { form, strength: 1.0, labels: vec![], during: None }] };
         assert!(problem(&Scene { preference, ..Scene::demo() }).contains("\"hug\""));
+        let gate = Gate { from: Vec2::ZERO, to: Vec2::ZERO, heading: None, spread: 0.1, group: Some("sit".into()) };
+        let sinks = vec![Sink { gate }];
+        let scene = Scene { sinks, ..Scene::demo() };
+        assert!(problem(&scene).contains("pose group") && problem(&scene).contains("\"sit\""));
+        let paper = admitted(&scene, &set(), Method::Paper).unwrap_err().to_string();
+        assert!(paper.contains("sink") && paper.contains("paper"), "{paper}");
         let periodic = Periodic { x: true, ..Periodic::default() };
         let repeating = Scene { periodic, ..Scene::demo() };
         assert!(admitted(&repeating, &set(), Method::Paper).unwrap_err().to_string().contains("periodic"));

@@ -10,6 +10,7 @@ use super::domain::Domain;
 use super::occupancy::PieceId;
 use super::piece::{Company, Piece, Shift};
 use super::sketch::{Mark, Sketch};
+use super::source::lead_out;
 use super::tracks::{Change, NEWCOMER, TrackId, Tracks, Window};
 use super::view::View;
 
@@ -96,10 +97,13 @@ impl<'a> Draft<'a> {
     ) -> Option<Vec<PieceId>> {
         let view = View { sketch: &self.desk.sketch, ..self.base.view() };
         let chain = self.desk.bridge.search(view, from, goal, company, taste, rng)?;
-        Some(chain.into_iter().map(|piece| self.add(piece)).collect())
+        // Ways out may lead beyond the end of time.
+        let domain = self.base.domain;
+        let seen = chain.into_iter().filter(|piece| domain.cycle.loops() || piece.begin < domain.horizon);
+        Some(seen.map(|piece| self.add(piece)).collect())
     }
 
-    /// Searches a chain that ends the life of somebody who walks alone: at the end of time, or where it began.
+    /// Searches a chain that ends the life of somebody who walks alone: at the end of time, out, or where it began.
     pub fn lead_to_the_end(
         &mut self,
         begin: Port,
@@ -109,7 +113,7 @@ impl<'a> Draft<'a> {
     ) -> Option<Vec<PieceId>> {
         match self.base.domain.cycle.loops() {
             true => self.come_round(from, begin, Company::NONE, taste, rng),
-            false => self.search(from, Goal::Until(self.base.domain.horizon), Company::NONE, taste, rng),
+            false => lead_out(self, from, Company::NONE, taste, rng),
         }
     }
 
@@ -185,9 +189,8 @@ impl<'a> Draft<'a> {
     ) -> Option<()> {
         let Window { track, from, to } = window;
         let (begin, end) = (self.base.port(track, from), self.base.port(track, to));
-        let open = to == self.base.tracks[track].len();
-        let (begin, goal) = match (from == 0, open) {
-            _ if self.base.domain.cycle.loops() => (begin, Goal::Port(end)),
+        let open = to == self.base.tracks[track].len() && self.base.ends_open(track);
+        let (begin, goal) = match (from == 0 && self.base.begins_open(track), open) {
             (_, true) => (begin, Goal::Until(self.base.domain.horizon)),
             (true, false) => (end, Goal::Since(0)),
             (false, false) => (begin, Goal::Port(end)),

@@ -26,11 +26,15 @@ use super::passage::Passages;
 use super::plan::Plan;
 use super::rehearsal::Rehearsal;
 use super::seed::seed_person;
+use super::source::{arrivals, let_in};
+use super::team::line_up;
 use super::tracks::{Tracks, Window};
 use super::{Scene, paper};
 use crate::patch::PatchSet;
 use crate::{Error, Result};
 
+/// Rounds of tries for people who come in at a source or begin in the place of a team.
+const ADMIT_ROUNDS: usize = 25;
 /// Rounds of tries for everybody in a placed patch to find their ways.
 const KEYFRAME_TRIES: usize = 25;
 /// States expanded for each of the ways.
@@ -49,7 +53,8 @@ const HOPELESS: f32 = 0.7;
 const EXPANSIONS_PER_STEP: usize = 4;
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 4000;
-/// Every so many people one is wished for who begins with a box in the hands, for so many tries.
+/// Every so many people one is wished for who begins with a box in the hands, for so many tries; the more, the more of
+/// that is wanted.
 const LADEN_EVERY: usize = 20;
 const LADEN_PATIENCE: usize = 60;
 const LADEN_EXPANSIONS: usize = 300;
@@ -173,13 +178,15 @@ fn engine(
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Outcome {
     let clock = Clock::new(options.time_secs, progress);
-    let library = Library::new(set, scene.limits).preferring(&scene.preference).placing(&scene.placed);
+    let library = Library::new(set, scene.limits).preferring(&scene.preference).placing(&scene.placed).parting(scene);
     let crew = Crew::new(Tracks::new(&library, domain), scene.region.area(), options.seed);
     let taste = Taste { calm: calm(scene), expansions: library.steps(domain.horizon) * EXPANSIONS_PER_STEP };
     let passages = Passages::new(&library);
     let plan = Plan::new(&library, &passages, domain.horizon, options.seed);
-    let mut engine = Engine { scene, crew, passages: &passages, plan, taste, clock };
+    let mut engine = Engine { scene, crew, passages: &passages, plan, taste, clock, most: scene.characters };
     let placed = engine.keyframes();
+    engine.line_up();
+    engine.let_in();
     engine.hurdle();
     engine.gather();
     engine.enrich(FIRST_PATIENCE);
@@ -223,6 +230,8 @@ struct Engine<'a> {
     plan: Plan<'a>,
     taste: Taste,
     clock: Clock<'a>,
+    /// Most people: those who are there anyway, those of the teams, and those who came in.
+    most: usize,
 }
 
 impl Engine<'_> {
@@ -231,14 +240,47 @@ impl Engine<'_> {
         self.clock.goes_on(|| state(tracks, phase))
     }
 
-    /// Ticks in patches of several people that are aimed at.
+    /// Ticks in patches of several people that are aimed at when everybody is there.
     fn company_wish(&self) -> usize {
-        let ticks = self.scene.characters * self.crew.tracks.domain.horizon as usize;
+        let ticks = self.crew.tracks.presence() + self.people_left() * self.crew.tracks.domain.horizon as usize;
         (self.scene.interaction * ABOVE_WISH * ticks as f32) as usize
     }
 
     fn people_left(&self) -> usize {
-        self.scene.characters.saturating_sub(self.crew.tracks.tracks.len())
+        self.most.saturating_sub(self.crew.tracks.tracks.len())
+    }
+
+    /// Puts the teams in their places.
+    fn line_up(&mut self) {
+        for (team, count) in self.scene.teams.iter().map(|t| t.characters).enumerate() {
+            let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
+            self.admit(vec![team; count], &|draft, team, rng| line_up(draft, team, taste, rng));
+        }
+    }
+
+    /// Lets people in at the sources.
+    fn let_in(&mut self) {
+        let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
+        self.admit(arrivals(self.scene), &|draft, arrival, rng| let_in(draft, arrival, taste, rng));
+    }
+
+    /// Puts in people who are to be somewhere at some time, as many of them as find room in some rounds.
+    fn admit<T: Copy + Sync>(
+        &mut self,
+        mut people: Vec<T>,
+        propose: &(impl Fn(&mut Draft, T, &mut ChaCha8Rng) -> Option<()> + Sync),
+    ) {
+        for _ in 0..ADMIT_ROUNDS {
+            let mut left = Vec::new();
+            for some in people.chunks(self.crew.batch) {
+                if self.goes_on(Phase::Seed) {
+                    let made = self.crew.work(some.len(), |i, draft, rng| propose(draft, some[i], rng), |_, _| true);
+                    self.most += made.iter().filter(|&&made| made).count();
+                    left.extend(some.iter().zip(made).filter(|(_, made)| !made).map(|(&person, _)| person));
+                }
+            }
+            people = left;
+        }
     }
 
     /// Puts in what the scene has placed; false if not everybody found ways to and from it.
@@ -271,8 +313,8 @@ impl Engine<'_> {
     /// Adds people who meet until there is as much company as wished for.
     fn gather(&mut self) {
         let (library, passages) = (self.crew.tracks.library, self.passages);
-        let (wish, most) = (self.company_wish(), self.scene.characters);
-        if library.multi.is_empty() || wish == 0 {
+        let (wish, most) = (self.company_wish(), self.most);
+        if library.multi.is_empty() || wish == 0 || self.people_left() == 0 || !self.scene.teams.is_empty() {
             return;
         }
         let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
@@ -296,11 +338,12 @@ impl Engine<'_> {
 
     /// Adds people who come alone until there are as many as wished for.
     fn seed(&mut self) {
-        let most = self.scene.characters;
+        let most = self.most;
         let boxes = self.crew.tracks.library.laden.contains(&true);
+        let every = laden_every(self.crew.tracks.library);
         let mut failures = 0;
         while self.people_left() > 0 && failures < SEED_PATIENCE && self.goes_on(Phase::Seed) {
-            let laden = boxes && self.people_left().is_multiple_of(LADEN_EVERY) && failures < LADEN_PATIENCE;
+            let laden = boxes && self.people_left().is_multiple_of(every) && failures < LADEN_PATIENCE;
             let count = if laden { 1 } else { self.crew.batch.min(self.people_left()) };
             // Fewer patches go on with a box in the hands: the search needs longer.
             let taste = if laden { Taste { expansions: LADEN_EXPANSIONS, ..self.taste } } else { self.taste };
@@ -384,6 +427,18 @@ impl Engine<'_> {
     }
 }
 
+/// Every how many people one is to begin with a box: the preference may want what is done with boxes more than all else.
+fn laden_every(library: &Library) -> usize {
+    let mean = |laden: bool| {
+        let singles =
+            library.forward.iter().enumerate().filter(|(g, _)| library.laden[*g] == laden).flat_map(|(_, m)| m);
+        let weights = singles.map(|m| library.preference.weight_of_kind(library.roles[m.role as usize].kind));
+        let (sum, count) = weights.fold((0.0, 0), |(sum, count), w| (sum + w, count + 1));
+        sum / count.max(1) as f32
+    };
+    ((LADEN_EVERY as f32 * mean(false) / mean(true).max(1e-6)).round() as usize).clamp(1, LADEN_EVERY)
+}
+
 /// Leads somebody another way for some seconds: new neighbours meet.
 fn stir(draft: &mut Draft, track: usize, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let tracks = draft.base;
@@ -406,8 +461,9 @@ fn status(chains: Chains, scene: &Scene, faults: usize) -> Status {
 /// The status of a tiling without danglings and interpenetrations: which wish is unmet.
 pub(super) fn wishes(chains: Chains, scene: &Scene) -> Status {
     let share = chains.multi_person_share();
-    if chains.lists.len() < scene.characters {
-        Status::Short(format!("{} of {} characters found room", chains.lists.len(), scene.characters))
+    let wanted = scene.people();
+    if chains.lists.len() < wanted {
+        Status::Short(format!("{} of {wanted} characters found room", chains.lists.len()))
     } else if share < scene.interaction && !chains.library.multi.is_empty() {
         Status::Short(format!(
             "{share:.3} of {:.3} of the time is spent in patches of several people",

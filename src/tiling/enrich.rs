@@ -14,6 +14,7 @@ use super::draft::Draft;
 use super::library::Role;
 use super::occupancy::PieceId;
 use super::piece::{Company, Piece, Shift};
+use super::team::{may_meet, team_of};
 use super::tracks::{TrackId, Tracks, Window};
 use super::tryout::is_clean;
 use crate::geom::Ground;
@@ -67,7 +68,7 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
     let lead_role = rng.random_range(roles.clone());
     let lead_track = rng.random_range(0..tracks.tracks.len());
     let lead = &library.roles[lead_role as usize];
-    let (at, tick, joint) = meeting_point(tracks, lead_track, lead, ticks, rng);
+    let (at, tick, joint) = meeting_point(tracks, lead_track, lead, ticks, rng)?;
     if !fits_hands(tracks, lead_track, lead.entry_group, tick) {
         return None;
     }
@@ -89,7 +90,8 @@ fn cast(tracks: &Tracks, kind: u32, ticks: Range<i32>, rng: &mut ChaCha8Rng) -> 
         }
         let part = |track, keep_before, keep_after| Part { track, role, entry, exit, keep_before, keep_after };
         let part = if role != lead_role {
-            let taken = |t: TrackId| t == lead_track || parts.iter().any(|p| p.track == t);
+            let barred = |t: TrackId, other: TrackId| t == other || !may_meet(tracks, kind, t, other);
+            let taken = |t: TrackId| barred(t, lead_track) || parts.iter().any(|p| barred(t, p.track));
             let heir = heir(tracks, role, exit, world_from_patch, clock);
             let (track, shift, from, to) = player(tracks, &entry, &exit, &heir, taken, &mut near, rng)?;
             Part { entry: shift.port(entry), exit: shift.port(exit), ..part(track, from, to) }
@@ -117,7 +119,7 @@ fn meeting_point(
     lead: &Role,
     ticks: Range<i32>,
     rng: &mut ChaCha8Rng,
-) -> (Ground, i32, Option<usize>) {
+) -> Option<(Ground, i32, Option<usize>)> {
     let tick = rng.random_range(ticks);
     let loops = tracks.domain.cycle.loops();
     // Some patches are met half-way through at the first frame.
@@ -128,17 +130,21 @@ fn meeting_point(
     } else {
         tick
     };
+    if !loops && !tracks.is_there(track, tick.max(0)) {
+        return None;
+    }
     if (tick > 0 || loops) && rng.random_range(0..2) == 0 {
         let joint = tracks.index_at(track, tick);
         let port = tracks.port(track, joint);
         let inside = loops || (port.tick > 0 && port.tick < tracks.domain.horizon - 15);
         if port.group == lead.entry_group && inside {
-            return (port.at, port.tick, Some(joint));
+            return Some((port.at, port.tick, Some(joint)));
         }
     }
     let on_the_way = tracks.state_at(track, if loops { tick } else { tick.max(0) });
     let aside = Vec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)) * JITTER;
-    (on_the_way.then(Ground::new(aside, rng.random_range(-JITTER_TURN..JITTER_TURN))), tick, None)
+    let at = on_the_way.then(Ground::new(aside, rng.random_range(-JITTER_TURN..JITTER_TURN)));
+    Some((at, tick, None))
 }
 
 /// From where a role's future is taken over: from its own exit, but where a box is handed on the one who comes with it
@@ -201,29 +207,28 @@ fn fits_hands(tracks: &Tracks, track: TrackId, group: u32, tick: i32) -> bool {
     library.laden[library.roles[piece.role as usize].entry_group as usize] == library.laden[group as usize]
 }
 
-/// First piece to rip up so that the person can walk to `entry`: where that is easiest; 0 if the person begins there.
+/// First piece to rip up so that the person can walk to `entry`: where that is easiest; 0 if the person may begin there.
 fn rip_from(tracks: &Tracks, track: TrackId, entry: &Port) -> Option<usize> {
-    let mut best = (0, None);
+    let (mut best, open) = ((0, None), tracks.begins_open(track));
+    let loops = tracks.domain.cycle.loops();
     for index in (0..tracks.index_before(track, entry.tick)).rev() {
         let from = tracks.port(track, index);
         if entry.tick - from.tick > LONGEST_BRIDGE || tracks.people_of(tracks.tracks[track][index]) > 1 {
             return best.1;
         }
         let ease = easy_closings(tracks.library, from, *entry);
-        if ease > best.0 && (from.tick > 0 || tracks.domain.cycle.loops()) {
+        if ease > best.0 && (from.tick > 0 || loops || index == 0 && !open) {
             best = (ease, Some(index));
         }
     }
-    best.1.or(Some(0))
+    best.1.or((open || loops).then_some(0))
 }
 
 /// First piece to keep after the patch; the number of pieces if the rest of the time is planned anew.
 fn rip_to(tracks: &Tracks, track: TrackId, entry: &Port, exit: &Port) -> Option<usize> {
-    let count = tracks.tracks[track].len();
+    let (count, open) = (tracks.tracks[track].len(), tracks.ends_open(track));
     let mut best = (0, None);
-    // Where time comes round the end of the track is a port as any other.
-    let last = if tracks.domain.cycle.loops() { count + 1 } else { count };
-    for index in tracks.index_before(track, exit.tick)..last {
+    for index in tracks.index_before(track, exit.tick)..count + usize::from(!open) {
         let to = tracks.port(track, index);
         if to.tick - exit.tick > LONGEST_BRIDGE {
             break;
@@ -232,11 +237,11 @@ fn rip_to(tracks: &Tracks, track: TrackId, entry: &Port, exit: &Port) -> Option<
         if ease > best.0 {
             best = (ease, Some(index));
         }
-        if index < count && tracks.people_of(tracks.tracks[track][index]) > 1 {
+        if tracks.tracks[track].get(index).is_some_and(|&id| tracks.people_of(id) > 1) {
             break;
         }
     }
-    let index = best.1.unwrap_or(count);
+    let index = best.1.or((open || tracks.domain.cycle.loops()).then_some(count))?;
     no_patch_between(tracks, track, entry.tick, tracks.port(track, index).tick).then_some(index)
 }
 
@@ -307,13 +312,21 @@ fn step_aside(draft: &mut Draft, parts: &[Part]) -> Option<Vec<Window>> {
     Some(windows)
 }
 
+/// True if a part leads to the end of time wherever that is.
+fn is_open(tracks: &Tracks, part: &Part) -> bool {
+    part.keep_after == tracks.tracks[part.track].len() && tracks.ends_open(part.track)
+}
+
 /// Whose future each part takes over: the pairing with the least way to go (parts are few). Nobody lives on with a box
 /// who has none.
 fn futures(tracks: &Tracks, parts: &[Part]) -> Vec<usize> {
     let way = |i: usize, j: usize| {
         let to = tracks.port(parts[j].track, parts[j].keep_after);
         let left = (to.tick - parts[i].exit.tick) as f32 / FPS;
-        let open = parts[j].keep_after == tracks.tracks[parts[j].track].len();
+        if i != j && team_of(tracks, parts[i].track) != team_of(tracks, parts[j].track) {
+            return NO_WAY;
+        }
+        let open = is_open(tracks, &parts[j]);
         let laden = |group: u32| tracks.library.laden[group as usize];
         if !open && laden(to.group) != laden(parts[i].exit.group) {
             return NO_WAY;
@@ -348,8 +361,7 @@ fn lead_in(
         return Some(vec![]);
     }
     match part.keep_before {
-        _ if loops => draft.search(from, Goal::Port(part.entry), company, taste, rng),
-        0 => draft.search(part.entry, Goal::Since(0), company, taste, rng),
+        0 if draft.base.begins_open(part.track) => draft.search(part.entry, Goal::Since(0), company, taste, rng),
         _ => draft.search(from, Goal::Port(part.entry), company, taste, rng),
     }
 }
@@ -363,8 +375,7 @@ fn lead_out(
     rng: &mut ChaCha8Rng,
 ) -> Option<Vec<PieceId>> {
     let (tracks, horizon) = (draft.base, draft.base.domain.horizon);
-    let open = future.keep_after == tracks.tracks[future.track].len();
-    let open = open && !tracks.domain.cycle.loops();
+    let open = is_open(tracks, future);
     if open && part.exit.tick >= horizon {
         return Some(vec![]);
     }

@@ -14,6 +14,7 @@ use super::draft::Draft;
 use super::occupancy::PieceId;
 use super::passage::{Part, Passages, Site, Way, parts, put, shuffled};
 use super::piece::{Company, Rigid};
+use super::source::{way_out, with_patience};
 use super::tryout::is_clean_where;
 use crate::geom::Ground;
 
@@ -274,7 +275,7 @@ pub(super) fn come(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut C
     Some(())
 }
 
-/// Leads somebody from their last patch to the end of time, or round to their first one.
+/// Leads somebody from their last patch to the end of time, or out, or round to their first one.
 pub(super) fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let horizon = draft.base.domain.horizon;
     let way = if draft.base.domain.cycle.loops() {
@@ -283,7 +284,8 @@ pub(super) fn part(draft: &mut Draft, life: &mut Life, taste: Taste, rng: &mut C
         tries.find_map(|company| draft.come_round(life.end, life.begin, company, taste, rng))?
     } else if life.end.tick < horizon {
         let company = Company { from: life.company.to, ..Company::NONE };
-        lead(draft, life.end, Goal::Until(horizon), company, taste, rng)?
+        let goal = way_out(draft, life.end, rng);
+        lead(draft, life.end, goal, company, with_patience(taste, goal), rng)?
     } else {
         vec![]
     };

@@ -11,6 +11,7 @@ use super::bridge::{Goal, NO_INSTANCE, Taste};
 use super::draft::Draft;
 use super::library::Library;
 use super::piece::{Company, Piece, Rigid};
+use super::tryout::is_clean;
 use crate::geom::Ground;
 
 /// Places, times and headings tried for one jump.
@@ -38,7 +39,7 @@ pub(super) fn hurdle(draft: &mut Draft, jumpers: &[u32], taste: Taste, rng: &mut
         pieces.extend(draft.lead_to_the_end(entry, exit, taste, rng)?);
     }
     draft.push_track(pieces);
-    Some(())
+    is_clean(draft).then_some(())
 }
 
 /// A free jump that is highest somewhere over a low obstacle at some time.

@@ -9,6 +9,9 @@ use super::footprint::{Footprint, Lifts, footprints, lying, reach};
 use super::piece::Piece;
 use super::prefer::{Preference, Ready};
 use super::scene::Placed;
+use super::scene::Scene;
+use super::source::Gates;
+use super::team::Sides;
 use crate::deform::{Limits, Strand};
 use crate::geom::{Ground, Turn, Upright};
 use crate::motion::{JOINT_COUNT, Motion, MotionPath};
@@ -164,6 +167,10 @@ pub(super) struct Library<'a> {
     pub laden: Vec<bool>,
     /// Which patches are wanted where, which way, when.
     pub preference: Ready,
+    /// Where people come in and go out.
+    pub gates: Gates,
+    /// The teams.
+    pub sides: Sides,
 }
 
 impl<'a> Library<'a> {
@@ -209,6 +216,8 @@ impl<'a> Library<'a> {
             max_reach: roles.iter().flat_map(Role::reaches).fold(0.0, f32::max),
             laden: set.laden_groups(),
             preference: Ready::default(),
+            gates: Gates::default(),
+            sides: Sides::default(),
             roles,
         }
     }
@@ -222,6 +231,13 @@ impl<'a> Library<'a> {
     pub fn placing(mut self, placed: &[Placed]) -> Self {
         let set = self.set;
         self.multi.retain(|&k| placed.iter().all(|p| p.kind != set.kinds[k as usize].name));
+        self
+    }
+
+    /// The same with the gates and teams of a scene.
+    pub fn parting(mut self, scene: &Scene) -> Self {
+        self.gates = Gates::new(scene, &self);
+        self.sides = Sides::new(scene, &self);
         self
     }
 

@@ -48,8 +48,9 @@ pub(super) fn possible(scene: &Scene) -> Result<()> {
             format!("expected at least {SHORTEST_LAP} s, because it repeats, found {found} s"),
         );
     }
-    if repeats.t && !(scene.sources.is_empty() && scene.sinks.is_empty()) {
-        return bad("periodic", "expected no sources and sinks where \"t\" repeats: everybody's life is a loop".into());
+    if repeats.t && !(scene.sources.is_empty() && scene.sinks.is_empty() && scene.teams.is_empty()) {
+        let problem = "expected no sources, sinks and teams where \"t\" repeats: everybody's life is a loop";
+        return bad("periodic", problem.into());
     }
     for (i, obstacle) in scene.obstacles.iter().enumerate() {
         if let Some(problem) = wayward(scene, obstacle) {

@@ -16,7 +16,7 @@ use crate::geom::Ground;
 /// Places tried for one person.
 const PLACES: usize = 20;
 
-/// Adds a person at a random place of the domain, present over the whole time; one who begins with a box in the hands,
+/// Adds a person who is at a random place of the domain at first, until the end of time or out; one who begins with a box in the hands,
 /// or by taking one up, if so wished.
 pub(super) fn seed_person(draft: &mut Draft, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let first = (0..PLACES).find_map(|_| first_piece(draft, laden, taste, rng))?;

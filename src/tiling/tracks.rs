@@ -10,6 +10,7 @@ use super::library::Library;
 use super::occupancy::{Occupancy, PieceId};
 use super::piece::{Piece, Shift};
 use super::sketch::Sketch;
+use super::team::team_of;
 use super::view::View;
 use crate::geom::{Ground, Torus};
 
@@ -248,6 +249,21 @@ impl<'a> Tracks<'a> {
         Window { track, from, to }
     }
 
+    /// True if a person may have come from anywhere: was there before time began, and not in the place of a team.
+    pub fn begins_open(&self, track: TrackId) -> bool {
+        !self.domain.cycle.loops() && self.port(track, 0).tick <= 0 && team_of(self, track).is_none()
+    }
+
+    /// True if a person may go anywhere: is still there when time ends.
+    pub fn ends_open(&self, track: TrackId) -> bool {
+        !self.domain.cycle.loops() && self.port(track, self.tracks[track].len()).tick >= self.domain.horizon
+    }
+
+    /// True if a person is there at a tick within the domain's time.
+    pub fn is_there(&self, track: TrackId, tick: i32) -> bool {
+        self.port(track, 0).tick <= tick && tick < self.port(track, self.tracks[track].len()).tick
+    }
+
     /// Index of the piece a track is in at `tick`.
     pub fn index_at(&self, track: TrackId, tick: i32) -> usize {
         let tick = self.fold(track, tick);
@@ -259,7 +275,7 @@ impl<'a> Tracks<'a> {
         self.tracks[track].partition_point(|&id| self.piece(id).begin < tick)
     }
 
-    /// Place and heading of a person at a tick within the domain's time.
+    /// Place and heading of a person at a tick at which the person is there.
     pub fn state_at(&self, track: TrackId, tick: i32) -> Ground {
         self.piece(self.tracks[track][self.index_at(track, tick)]).state(self.fold(track, tick))
     }
@@ -322,9 +338,18 @@ impl<'a> Tracks<'a> {
         self.company
     }
 
+    /// Ticks that people are there.
+    pub fn presence(&self) -> usize {
+        if self.domain.cycle.loops() {
+            return self.tracks.len() * self.domain.horizon as usize;
+        }
+        let last = |t: TrackId| self.port(t, self.tracks[t].len()).tick.min(self.domain.horizon);
+        (0..self.tracks.len()).map(|t| (last(t) - self.port(t, 0).tick.max(0)) as usize).sum()
+    }
+
     /// Share of the people's time inside patches of two or more.
     pub fn multi_person_share(&self) -> f32 {
-        self.company as f32 / (self.tracks.len() * self.domain.horizon as usize).max(1) as f32
+        self.company as f32 / self.presence().max(1) as f32
     }
 
     /// Number of instances.

@@ -54,6 +54,7 @@ def plan(
     now = person_colours(crowd, who, secs, kind_colours)
     trails(axes, crowd, secs, now)
     bodies(axes, crowd, secs, now)
+    boxes(axes, crowd, secs)
     captions(sheet, *told, secs, palette)
     scale_bar(axes, high)
     if path is not None:
@@ -170,6 +171,23 @@ def bodies(axes: Axes, crowd: Crowd, secs: float, colours: dict[int, style.Colou
             fills.append(style.mix(colour, style.INK, float(dark)))
     axes.add_collection(PolyCollection(shadows, facecolors=(0.15, 0.14, 0.12, 0.045), edgecolors="none", zorder=5))
     axes.add_collection(PolyCollection(shapes, facecolors=fills, edgecolors="none", zorder=6))
+
+
+def boxes(axes: Axes, crowd: Crowd, secs: float) -> None:
+    """The boxes that people carry or that lie there, with their tape; those on the ground are under people."""
+    props = crowd.props
+    for number, (x, y, z, heading) in zip(*crowd.props_at(secs), strict=True):
+        width, height, depth = props[int(number)].size
+        left, ahead = np.array([np.cos(heading), -np.sin(heading)]), np.array([np.sin(heading), np.cos(heading)])
+        layer = 5.5 if y < height else 6.5
+
+        def corner(u: float, v: float) -> np.ndarray:
+            return np.array([x, z]) + u * width / 2 * left + v * depth / 2 * ahead  # noqa: B023
+
+        for across, colour in ((1.0, "#b68a5a"), (0.16, "#d9c7a3")):
+            outline = [corner(1, across), corner(1, -across), corner(-1, -across), corner(-1, across)]
+            edge = style.INK if across == 1.0 else "none"
+            axes.add_patch(Polygon(outline, closed=True, facecolor=colour, edgecolor=edge, linewidth=0.7, zorder=layer))
 
 
 def stadium(capsule: np.ndarray, grow: float, corners: int = 10) -> np.ndarray:

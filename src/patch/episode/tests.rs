@@ -20,7 +20,12 @@ struct Sample {
 
 fn takes(seed: u64) -> Vec<Sample> {
     let sample = |take: samples::Take| Sample { motions: retarget::take(&take.clips).unwrap(), file: take.file };
-    samples::generate(seed).into_iter().map(sample).collect()
+    samples::generate(seed).into_iter().filter(|t| !is_hopped(&t.file)).map(sample).collect()
+}
+
+/// Upper arms that knock against each other in a hop are no contact that is looked for.
+pub(super) fn is_hopped(file: &TakeFile) -> bool {
+    file.patches.iter().any(|p| p.labels.iter().any(|l| l == "hop"))
 }
 
 fn found(samples: &[Sample]) -> Vec<Detection> {

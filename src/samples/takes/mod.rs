@@ -3,6 +3,7 @@
 mod actions;
 mod carry;
 mod greet;
+mod hop;
 mod jump;
 mod lift;
 mod meet;
@@ -32,6 +33,7 @@ pub(super) fn scenes() -> Vec<Scene> {
         talk::scenes(),
         trio::scenes(),
         rows::scenes(),
+        hop::scenes(),
     ];
     all.into_iter().flatten().collect()
 }

@@ -66,7 +66,19 @@ fn poses_at_ports_of_a_group_are_alike() {
         }
     }
     let names: Vec<_> = groups.keys().map(String::as_str).collect();
-    assert_eq!(names, ["carry_stand", "carry_walk_left", "carry_walk_right", "stand", "walk_left", "walk_right"]);
+    assert_eq!(
+        names,
+        [
+            "carry_stand",
+            "carry_walk_left",
+            "carry_walk_right",
+            "hop_left",
+            "hop_right",
+            "stand",
+            "walk_left",
+            "walk_right"
+        ]
+    );
     for (name, ports) in &groups {
         let (angles, gap) = if name.ends_with("stand") { (5.0, 0.02) } else { (12.0, 0.035) };
         for joint in 0..JOINT_COUNT {

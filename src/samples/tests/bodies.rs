@@ -7,7 +7,7 @@ use crate::motion::limits::excess;
 use crate::motion::{JOINT_COUNT, canonical, joint::*};
 
 fn jumps(take: &Take) -> bool {
-    take.file.patches.iter().any(|p| p.labels.iter().any(|l| l == "jump"))
+    take.file.patches.iter().any(|p| p.labels.iter().any(|l| l == "jump" || l == "hop"))
 }
 
 #[test]

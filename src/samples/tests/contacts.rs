@@ -38,7 +38,7 @@ fn hands_meet() {
 fn hands_on_bodies_are_near_them() {
     for (take, people) in TAKES.iter() {
         let globals = |person: usize, f: usize| people[person][f].as_slice();
-        for c in take.file.contacts.iter().filter(|c| c.b.part == BodyPart::Torso) {
+        for c in take.file.contacts.iter().filter(|c| is_hand(c.a.part) && c.b.part == BodyPart::Torso) {
             for f in frame(c.begin)..=frame(c.end) {
                 let mut capsules = Vec::new();
                 body_capsules(globals(c.b.person, f), &mut capsules);

@@ -3,6 +3,7 @@
 mod annotation;
 mod bodies;
 mod contacts;
+mod hops;
 mod jumps;
 
 use std::sync::LazyLock;

@@ -2,10 +2,10 @@
 
 use glam::Vec2;
 
-use super::parts::{Gate, KindFilter, Periodic, Placed, Sink, Source, Team};
+use super::parts::{KindFilter, Periodic, Placed, Sink, Source, Team};
 use super::read::Section;
 use super::{MAX_CHARACTERS, MAX_SECS};
-use crate::geom::{Ground, Obstacle, Polygon, Waypoint};
+use crate::geom::{Gate, Ground, Obstacle, Polygon, Waypoint};
 
 /// Most people that one source lets in.
 const MAX_ARRIVALS: usize = 100_000;

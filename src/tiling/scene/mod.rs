@@ -18,7 +18,7 @@ use crate::geom::{Obstacle, Polygon};
 use crate::motion::FPS;
 use crate::{Error, Result};
 
-pub use parts::{Gate, KindFilter, Periodic, Placed, Sink, Source, Team};
+pub use parts::{KindFilter, Periodic, Placed, Sink, Source, Team};
 
 /// What to tile: a domain open (cropped) in time, and wishes.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,7 @@ pub struct Scene {
     pub obstacles: Vec<Obstacle>,
     /// Seconds.
     pub duration_secs: f32,
-    /// How many people are wished for.
+    /// How many people are wished for besides those of teams and those who come in at sources.
     pub characters: usize,
     /// Share of the people's time that is wished for inside patches of two or more, 0 to 1.
     pub interaction: f32,
@@ -85,6 +85,12 @@ impl Scene {
     pub fn demo() -> Self {
         let region = Polygon::rectangle(Vec2::ZERO, Vec2::splat(12.0));
         Self { interaction: 0.26, ..Self::new(region, 20.0, 72) }
+    }
+
+    /// How many people are wished for: those who are there anyway, those of the teams, and those who come in.
+    pub fn people(&self) -> usize {
+        let coming = super::source::arrivals(self).len();
+        self.characters + self.teams.iter().map(|t| t.characters).sum::<usize>() + coming
     }
 
     /// The last frame, inclusive.
@@ -167,7 +173,7 @@ fn read(file: Section) -> Option<Scene> {
     whole.then_some(scene)
 }
 
-/// `characters`, or as many as `density` makes, or as many as the teams and sources bring.
+/// `characters`, or as many as `density` makes; nobody besides those whom teams and sources bring.
 fn characters(file: &Section, scene: &Scene) -> usize {
     let characters = file.count("characters", 1..=MAX_CHARACTERS);
     let density = file.number("density", 1e-6..=10.0, " people per square metre");

@@ -1,9 +1,7 @@
 //! What a scene may hold besides walls and wishes.
 
-use glam::Vec2;
-
 pub use crate::geom::Periodic;
-use crate::geom::{Ground, Polygon};
+use crate::geom::{Gate, Ground, Polygon};
 
 /// Which kinds of a patch set are used, by their labels.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,21 +18,6 @@ impl KindFilter {
         let has = |wanted: &[String]| wanted.iter().any(|l| labels.contains(l));
         (self.only.is_empty() || has(&self.only)) && !has(&self.without)
     }
-}
-
-/// A place where people come in or go out: a stretch of ground, mostly of the border.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Gate {
-    /// One end of the stretch, metres.
-    pub from: Vec2,
-    /// The other; the same for a point.
-    pub to: Vec2,
-    /// Which way people look, radians; any if none.
-    pub heading: Option<f32>,
-    /// How far from it they may look, radians.
-    pub spread: f32,
-    /// Pose group they are in, by name; any if none.
-    pub group: Option<String>,
 }
 
 /// Where people come in.
