@@ -53,6 +53,9 @@ const HOPELESS: f32 = 0.7;
 const EXPANSIONS_PER_STEP: usize = 4;
 /// Failed tries in a row after which no further person is wished for.
 const SEED_PATIENCE: usize = 4000;
+/// After so many of them searches take longer, up to so many times.
+const SEED_AGAIN: usize = 200;
+const SEED_EFFORT: usize = 6;
 /// Every so many people one is wished for who begins with a box in the hands, for so many tries; the more, the more of
 /// that is wanted.
 const LADEN_EVERY: usize = 20;
@@ -346,7 +349,9 @@ impl Engine<'_> {
             let laden = boxes && self.people_left().is_multiple_of(every) && failures < LADEN_PATIENCE;
             let count = if laden { 1 } else { self.crew.batch.min(self.people_left()) };
             // Fewer patches go on with a box in the hands: the search needs longer.
-            let taste = if laden { Taste { expansions: LADEN_EXPANSIONS, ..self.taste } } else { self.taste };
+            let patience = (1 + failures / SEED_AGAIN).min(SEED_EFFORT);
+            let least = if laden { LADEN_EXPANSIONS } else { 0 };
+            let taste = Taste { expansions: (patience * self.taste.expansions).max(least), ..self.taste };
             let made = self.crew.work(
                 count,
                 |_, draft, rng| seed_person(draft, laden, taste, rng),

@@ -157,7 +157,7 @@ fn place(draft: &Draft, wish: Wish, rng: &mut ChaCha8Rng) -> Option<Meeting> {
     let earliest = if domain.cycle.loops() { 0 } else { SEEN - longest };
     let latest = if domain.cycle.loops() { domain.horizon } else { domain.horizon - SEEN - wish.together };
     let clock = rng.random_range(earliest..latest.max(earliest + 1));
-    if !library.preference.is_wanted(wish.kind, domain.stay(world_from_patch, clock.max(0)), rng) {
+    if !library.preference.is_wanted_there(wish.kind, domain.stay(world_from_patch, clock.max(0)), rng) {
         return None;
     }
     let parts = parts(library, wish.kind, world_from_patch, clock);
@@ -184,12 +184,12 @@ fn go_on(
 ) -> Option<Meeting> {
     let (library, domain) = (draft.base.library, draft.base.domain);
     let latest = lives.iter().map(|l| l.latest(domain)).min()?;
-    shuffled(passages.of(meeting.kind, Way::Stay), rng).into_iter().find_map(|passage| {
+    shuffled(library, passages.of(meeting.kind, Way::Stay), rng).into_iter().find_map(|passage| {
         let encore = passage.encore.expect("people go on");
         let parts = encore.parts(library, meeting.world_from_patch, meeting.clock);
         let (kind, stay) = (encore.kind, domain.stay(parts[0].entry.at, parts[0].entry.tick));
         let too_late = domain.cycle.loops() && parts.iter().any(|p| p.exit.tick > latest);
-        if too_late || !library.preference.is_wanted(kind, stay, rng) || !is_free(draft, &parts) {
+        if too_late || !library.preference.is_wanted_there(kind, stay, rng) || !is_free(draft, &parts) {
             return None;
         }
         let mark = draft.mark();
@@ -220,12 +220,12 @@ fn come_together(
     lives: &mut [Life],
     rng: &mut ChaCha8Rng,
 ) -> Option<()> {
-    let loops = draft.base.domain.cycle.loops();
+    let (library, loops) = (draft.base.library, draft.base.domain.cycle.loops());
     let comes: Vec<bool> = lives.iter().map(|l| loops || l.begin.tick > 0).collect();
     if !comes.contains(&true) {
         return Some(());
     }
-    let ways = shuffled(passages.of(meeting.kind, Way::Come), rng).into_iter().find_map(|passage| {
+    let ways = shuffled(library, passages.of(meeting.kind, Way::Come), rng).into_iter().find_map(|passage| {
         put(draft, passage, meeting.site(NO_INSTANCE), |role, piece| comes[role] && (loops || piece.end > 0))
     })?;
     for (life, way) in lives.iter_mut().zip(ways) {
@@ -246,12 +246,12 @@ fn part_ways(
     lives: &mut [Life],
     rng: &mut ChaCha8Rng,
 ) -> Option<()> {
-    let (loops, horizon) = (draft.base.domain.cycle.loops(), draft.base.domain.horizon);
+    let (library, loops, horizon) = (draft.base.library, draft.base.domain.cycle.loops(), draft.base.domain.horizon);
     let parts: Vec<bool> = lives.iter().map(|l| loops || l.end.tick < horizon).collect();
     if !parts.contains(&true) {
         return Some(());
     }
-    let ways = shuffled(passages.of(meeting.kind, Way::Part), rng).into_iter().find_map(|passage| {
+    let ways = shuffled(library, passages.of(meeting.kind, Way::Part), rng).into_iter().find_map(|passage| {
         put(draft, passage, meeting.site(NO_INSTANCE), |role, piece| parts[role] && (loops || piece.begin < horizon))
     })?;
     for (life, way) in lives.iter_mut().zip(ways) {

@@ -5,7 +5,6 @@
 use std::sync::OnceLock;
 
 use glam::Vec2;
-use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -299,11 +298,14 @@ pub(super) fn put(
     Some(ways)
 }
 
-/// The passages of a list in random order.
-pub(super) fn shuffled<'p>(passages: &'p [Passage], rng: &mut ChaCha8Rng) -> Vec<&'p Passage> {
-    let mut order: Vec<&Passage> = passages.iter().collect();
-    order.shuffle(rng);
-    order
+/// The passages of a list in random order, those to what is wanted first.
+pub(super) fn shuffled<'p>(library: &Library, passages: &'p [Passage], rng: &mut ChaCha8Rng) -> Vec<&'p Passage> {
+    let weight = |p: &Passage| p.encore.map_or(1.0, |e| library.preference.weight_of_kind(e.kind));
+    // The first of many exponential waits is each one's with a probability in proportion to its rate.
+    let mut wait = |p: &Passage| -rng.random_range(f32::MIN_POSITIVE..1.0f32).ln() / weight(p);
+    let mut order: Vec<(f32, &Passage)> = passages.iter().map(|p| (wait(p), p)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order.into_iter().map(|(_, p)| p).collect()
 }
 
 #[cfg(test)]

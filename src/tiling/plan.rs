@@ -52,7 +52,8 @@ impl<'a> Plan<'a> {
                 return 0.0;
             }
             let enough = (self.potential(r.kind) / (RESERVE * need)).min(1.0);
-            enough * enough * (r.made + 0.5 * CREDIT) / (r.tried + CREDIT)
+            self.library.preference.weight_of_kind(r.kind) * enough * enough * (r.made + 0.5 * CREDIT)
+                / (r.tried + CREDIT)
         };
         let weights: Vec<f32> = self.records.iter().map(weight).collect();
         let mut at = self.rng.random_range(0.0..1.0) * weights.iter().sum::<f32>();

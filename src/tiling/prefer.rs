@@ -184,6 +184,11 @@ impl Ready {
         self.terms.is_empty() || rng.random_range(0.0..1.0) < self.weight(kind, stay).max(LEAST)
     }
 
+    /// The same of a kind that was drawn by [`Self::weight_of_kind`].
+    pub fn is_wanted_there(&self, kind: u32, stay: Stay, rng: &mut ChaCha8Rng) -> bool {
+        self.terms.is_empty() || rng.random_range(0.0..1.0) < self.weight_of_stay(kind, stay).max(LEAST)
+    }
+
     fn fixed(&self, kind: u32) -> f32 {
         self.kinds.get(kind as usize).map_or(0.0, |k| k.0.min(LARGEST))
     }

@@ -2,6 +2,7 @@
 
 use glam::Vec2;
 use rand::RngExt;
+use rand::seq::IndexedRandom;
 use rand_chacha::ChaCha8Rng;
 
 use super::bridge::{NO_INSTANCE, STANDING_SPEED, Taste};
@@ -36,7 +37,7 @@ fn first_piece(draft: &Draft, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -
     let lead = rng.random_range(0..library.roles[role as usize].ticks);
     let tick = if domain.cycle.loops() { rng.random_range(0..domain.horizon) } else { 0 };
     let stay = Stay::new(Ground::new(place, heading), tick);
-    let wanted = library.preference.is_wanted(library.roles[role as usize].kind, stay, rng);
+    let wanted = library.preference.is_wanted_there(library.roles[role as usize].kind, stay, rng);
     if !wanted || !domain.holds(Spot::ground(tick), place, 0.35) {
         return None;
     }
@@ -64,5 +65,7 @@ fn first_role(library: &Library, laden: bool, taste: Taste, rng: &mut ChaCha8Rng
         false => roles(&|m| !lifts(m) && !carries(m)),
     };
     let wanted = if wanted.is_empty() { roles(&|_| true) } else { wanted };
-    wanted[rng.random_range(0..wanted.len())]
+    *wanted
+        .choose_weighted(rng, |&r| library.preference.weight_of_kind(library.roles[r as usize].kind))
+        .expect("some role")
 }
