@@ -70,12 +70,12 @@ const STIR_AFTER: usize = 14;
 /// Ticks before and after a piece that are then bridged anew.
 const STIR_TICKS: i32 = 45;
 /// The share is aimed at a little higher than wished for: mending may cost a patch or two.
-const ABOVE_WISH: f32 = 1.04;
+const ABOVE_WISH: f32 = 1.08;
 /// Tries per person in the sweep through time, and how far ahead of it patches are put, ticks.
 const SWEEP_TRIES: usize = 60;
 const SWEEP_TICKS: i32 = 30;
 /// Rounds after which patches of several people are given up for a fault.
-const GENTLE_ROUNDS: usize = 6;
+const GENTLE_ROUNDS: usize = 3;
 /// States expanded to mend a fault.
 const MEND_EXPANSIONS: usize = 1500;
 /// How often patches of several people that mending cost are made up for.

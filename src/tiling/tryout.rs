@@ -24,32 +24,33 @@ const LEAD_TICKS: i32 = 40;
 /// Hips farther apart than this are of people who do not touch, metres.
 const FAR: f32 = 2.2;
 
-/// What is new of somebody.
+/// Somebody's part in a draft.
 struct Turn<'d> {
-    /// The patches around it.
+    /// The patches around all that is new.
     pieces: Vec<&'d Piece>,
-    /// When.
-    ticks: Range<i32>,
+    /// When there is something new of this person.
+    ticks: Option<Range<i32>>,
 }
 
 impl<'d> Turn<'d> {
-    /// `None` if nothing is new in a track.
-    fn of(draft: &'d Draft, track: &[PieceId], is_new: impl Fn(PieceId) -> bool) -> Option<Self> {
-        let mut new = track.iter().filter(|&&id| is_new(id)).map(|&id| draft.piece(id));
-        let first = new.next()?;
-        let last = new.next_back().unwrap_or(first);
-        let ticks = first.begin - BLEND_TICKS..last.end + BLEND_TICKS;
-        let pieces = track.iter().map(|&id| draft.piece(id));
-        if draft.base.domain.cycle.loops() {
-            return Some(Self { pieces: pieces.collect(), ticks });
-        }
-        let is_near = |p: &&Piece| p.end > ticks.start - LEAD_TICKS && p.begin < ticks.end + LEAD_TICKS;
-        Some(Self { pieces: pieces.filter(is_near).collect(), ticks })
+    fn new(draft: &'d Draft, track: &[PieceId], ticks: Option<Range<i32>>, around: &Range<i32>) -> Self {
+        let loops = draft.base.domain.cycle.loops();
+        let is_near = |p: &&Piece| p.end > around.start - LEAD_TICKS && p.begin < around.end + LEAD_TICKS;
+        let pieces = track.iter().map(|&id| draft.piece(id)).filter(|p| loops || is_near(p));
+        Self { pieces: pieces.collect(), ticks }
     }
 
     fn piece_at(&self, tick: i32) -> Option<&'d Piece> {
         self.pieces.iter().copied().find(|p| tick < p.end)
     }
+}
+
+/// From the first to the last new piece of a track, and a blend's length around.
+fn ticks_of(draft: &Draft, track: &[PieceId], is_new: impl Fn(PieceId) -> bool) -> Option<Range<i32>> {
+    let mut new = track.iter().filter(|&&id| is_new(id)).map(|&id| draft.piece(id));
+    let first = new.next()?;
+    let last = new.next_back().unwrap_or(first);
+    Some(first.begin - BLEND_TICKS..last.end + BLEND_TICKS)
 }
 
 /// True if everybody in a draft moves as people can and no two of them run into each other. Where time comes round, each
@@ -61,40 +62,44 @@ pub(super) fn is_clean(draft: &Draft) -> bool {
 /// The same from the first to the last of some pieces of each person.
 pub(super) fn is_clean_where(draft: &Draft, is_new: impl Fn(PieceId) -> bool) -> bool {
     let (library, domain) = (draft.base.library, draft.base.domain);
-    let turns: Vec<Turn> = tracks(draft).filter_map(|track| Turn::of(draft, track, &is_new)).collect();
+    let new = |track: &'_ [PieceId]| ticks_of(draft, track, &is_new);
+    let union = |a: Range<i32>, b: Range<i32>| a.start.min(b.start)..a.end.max(b.end);
+    let Some(around) = tracks(draft).filter_map(new).reduce(union) else { return true };
+    let turns: Vec<Turn> = tracks(draft).map(|track| Turn::new(draft, track, new(track), &around)).collect();
     let chains: Vec<_> = turns.iter().map(|t| uses(library, domain, t.pieces.iter().copied())).collect();
     let people: Vec<_> = chains.iter().map(|chain| segments(chain)).collect();
     let bodies = refine_all(&people, domain.last_frame(), domain.torus).bodies;
     turns.iter().zip(&bodies).all(|(turn, body)| moves_cleanly(library, domain, turn, body))
-        && (domain.cycle.loops() || all_are_apart(draft, &turns, &bodies))
+        && (domain.cycle.loops() || all_are_apart(draft, &turns, &bodies, &around))
 }
 
 fn moves_cleanly(library: &Library, domain: &Domain, turn: &Turn, body: &Body) -> bool {
+    let Some(ticks) = &turn.ticks else { return true };
     // Where time comes round, in the second lap or right before it.
-    let lap = domain.cycle.fold(turn.ticks.start, domain.frames().start) - turn.ticks.start;
+    let lap = domain.cycle.fold(ticks.start, domain.frames().start) - ticks.start;
     let frame = |tick: i32| (tick + lap - body.begin as i32).clamp(0, body.root.len() as i32) as usize;
-    first_unclean(body, library, domain, frame(turn.ticks.start)..frame(turn.ticks.end)).is_none()
+    first_unclean(body, library, domain, frame(ticks.start)..frame(ticks.end)).is_none()
 }
 
-fn all_are_apart(draft: &Draft, turns: &[Turn], bodies: &[Body]) -> bool {
-    (0..turns.len()).all(|i| (0..i).all(|j| are_apart(draft, [&turns[i], &turns[j]], [&bodies[i], &bodies[j]])))
+fn all_are_apart(draft: &Draft, turns: &[Turn], bodies: &[Body], ticks: &Range<i32>) -> bool {
+    let apart = |i: usize, j: usize| are_apart(draft, [&turns[i], &turns[j]], [&bodies[i], &bodies[j]], ticks);
+    (0..turns.len()).all(|i| (0..i).all(|j| apart(i, j)))
 }
 
 /// All pieces of those who change.
-fn tracks<'d>(draft: &'d Draft) -> impl Iterator<Item = &'d [PieceId]> {
+fn tracks<'d>(draft: &'d Draft) -> impl Iterator<Item = &'d [PieceId]> + Clone {
     let changed = draft.changed();
     let is_last = move |i: usize| changed[i].0 == NEWCOMER || changed[i + 1..].iter().all(|c| c.0 != changed[i].0);
     changed.iter().enumerate().filter(move |(i, _)| is_last(*i)).map(|(_, c)| c.1.as_slice())
 }
 
 /// True if two people are never deeper in each other than they were captured.
-fn are_apart(draft: &Draft, turns: [&Turn; 2], bodies: [&Body; 2]) -> bool {
-    let ticks = turns[0].ticks.start.max(turns[1].ticks.start)..turns[0].ticks.end.min(turns[1].ticks.end);
+fn are_apart(draft: &Draft, turns: [&Turn; 2], bodies: [&Body; 2], ticks: &Range<i32>) -> bool {
     let near = |tick: i32| {
         let [a, b] = bodies.map(|body| frame_at(body, tick).map(|frame| body.root[frame]));
         a.zip(b).is_some_and(|(a, b)| a.distance_squared(b) < FAR * FAR)
     };
-    ticks.into_iter().filter(|&tick| near(tick)).all(|tick| {
+    ticks.clone().filter(|&tick| near(tick)).all(|tick| {
         let [a, b] = bodies.map(|body| Figure::of(body, canonical(), tick).expect("near, so there"));
         let depth = a.depth_into(&b);
         let pieces = turns.map(|t| t.piece_at(tick));
