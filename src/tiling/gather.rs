@@ -99,11 +99,15 @@ pub(super) fn gather(
 ) -> Option<()> {
     let meeting = (0..PLACES).find_map(|_| place(draft, wish, rng))?;
     let lives = live(draft, passages, meeting, wish, taste, rng)?;
-    // Passages are known to be clean, so that only what leads to and from them is new.
-    let (came, parted): (Vec<_>, Vec<_>) = lives.iter().map(|l| (l.came().to_vec(), l.parted().to_vec())).unzip();
-    let among = |ways: &[Vec<PieceId>], id: PieceId| ways.iter().flatten().any(|&way| way == id);
-    lives.into_iter().for_each(|life| draft.push_track(life.pieces));
-    let is_clean = is_clean_where(draft, |id| among(&came, id)) && is_clean_where(draft, |id| among(&parted, id));
+    // Passages are known to be clean, so that only what leads to and from them is new, and what time cuts off.
+    let horizon = draft.base.domain.horizon;
+    let [mut early, mut late]: [Vec<PieceId>; 2] = Default::default();
+    for life in lives {
+        early.extend(life.came().iter().chain(life.pieces.iter().filter(|&&id| draft.piece(id).begin < 0)));
+        late.extend(life.parted().iter().chain(life.pieces.iter().filter(|&&id| draft.piece(id).end > horizon)));
+        draft.push_track(life.pieces);
+    }
+    let is_clean = is_clean_where(draft, |id| early.contains(&id)) && is_clean_where(draft, |id| late.contains(&id));
     is_clean.then_some(())
 }
 
