@@ -70,7 +70,7 @@ const STIR_AFTER: usize = 14;
 /// Ticks before and after a piece that are then bridged anew.
 const STIR_TICKS: i32 = 45;
 /// The share is aimed at a little higher than wished for: mending may cost a patch or two.
-const ABOVE_WISH: f32 = 1.08;
+const ABOVE_WISH: f32 = 1.05;
 /// Tries per person in the sweep through time, and how far ahead of it patches are put, ticks.
 const SWEEP_TRIES: usize = 60;
 const SWEEP_TICKS: i32 = 30;

@@ -17,8 +17,9 @@ use super::tracks::NEWCOMER;
 use crate::motion::canonical;
 use crate::refine::{Body, refine_all};
 
-/// Ticks around what is new over which its stitches may change a body.
-const BLEND_TICKS: i32 = 16;
+/// Ticks around what is new over which its stitches may change a body: a blend, the plant that it moves, the swing after
+/// that one.
+const STITCH_TICKS: i32 = 56;
 /// Ticks around that whose patches are looked at as well, so that nothing is seen differently than in the end.
 const LEAD_TICKS: i32 = 40;
 /// Hips farther apart than this are of people who do not touch, metres.
@@ -45,12 +46,12 @@ impl<'d> Turn<'d> {
     }
 }
 
-/// From the first to the last new piece of a track, and a blend's length around.
+/// From the first to the last new piece of a track, and as far around it as it may change something.
 fn ticks_of(draft: &Draft, track: &[PieceId], is_new: impl Fn(PieceId) -> bool) -> Option<Range<i32>> {
     let mut new = track.iter().filter(|&&id| is_new(id)).map(|&id| draft.piece(id));
     let first = new.next()?;
     let last = new.next_back().unwrap_or(first);
-    Some(first.begin - BLEND_TICKS..last.end + BLEND_TICKS)
+    Some(first.begin - STITCH_TICKS..last.end + STITCH_TICKS)
 }
 
 /// True if everybody in a draft moves as people can and no two of them run into each other. Where time comes round, each
