@@ -1,8 +1,10 @@
 //! Baking: chains of pieces become the finished crowd. Both methods end here.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 
 use super::Scene;
 use super::builds::people;
@@ -10,7 +12,7 @@ use super::domain::Domain;
 use super::library::Library;
 use super::occupancy::{Occupancy, PieceId};
 use super::piece::{Piece, Shift};
-use crate::motion::JOINT_COUNT;
+use crate::motion::{Build, JOINT_COUNT};
 use crate::patch::{PatchKind, filed_rotation};
 use crate::refine::{Body, Performance};
 use crate::stage::{Character, Crowd, DomainInfo, FragmentUse, Instance};
@@ -119,27 +121,13 @@ fn placed<'a>(library: &Library<'a>, domain: &Domain, piece: &Piece, by: Shift) 
 /// The finished crowd. Instances are numbered in the order in which people meet them.
 pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, played: Performance) -> Crowd {
     let Performance { bodies, props, .. } = played;
-    let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
-    let instances_of_a_lap = if chains.domain.cycle.loops() { LAP } else { u32::MAX };
-    let mut instances = Vec::new();
-    let mut characters = Vec::with_capacity(bodies.len());
-    for (person, (build, body)) in people(chains, &bodies, &props, seed).into_iter().enumerate() {
-        let mut fragments: Vec<FragmentUse> =
-            segments_of(chains, person).into_iter().map(|(_, placed)| placed).collect();
-        let body = last_lap_but_one(chains.domain, body, &mut fragments);
-        let roles: BTreeMap<u32, u32> = chains.pieces(person).map(|p| (p.instance, p.role)).collect();
-        for f in &mut fragments {
-            let kind = chains.library.roles[roles[&(f.instance % instances_of_a_lap)] as usize].kind;
-            f.instance = *numbers.entry(f.instance).or_insert_with(|| {
-                instances.push(Instance { kind });
-                instances.len() as u32 - 1
-            });
-        }
-        let Body { begin, root, rotations, .. } = body;
-        // As a file keeps them: what is checked in memory is what is loaded later.
-        let rotations = rotations.into_iter().map(filed_rotation).collect();
-        characters.push(Character { begin, build, fragments, root, rotations });
-    }
+    let builds = people(chains, &bodies, &props, seed);
+    let mut characters: Vec<Character> = builds
+        .into_par_iter()
+        .enumerate()
+        .map(|(person, (build, body))| character(chains, person, build, body))
+        .collect();
+    let instances = number_instances(chains, &mut characters);
     let domain = DomainInfo {
         region: scene.region.clone(),
         obstacles: scene.obstacles.clone(),
@@ -149,6 +137,33 @@ pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, played: Performance
         periodic: scene.periodic,
     };
     Crowd { seed, domain, set: chains.library.set.clone(), instances, characters, props }
+}
+
+/// Somebody as the crowd keeps them, but for the numbers of instances.
+fn character(chains: Chains, person: usize, build: Arc<Build>, body: Body) -> Character {
+    let mut fragments: Vec<FragmentUse> = segments_of(chains, person).into_iter().map(|(_, placed)| placed).collect();
+    let Body { begin, root, rotations, .. } = last_lap_but_one(chains.domain, body, &mut fragments);
+    // As a file keeps them: what is checked in memory is what is loaded later.
+    let rotations = rotations.into_iter().map(filed_rotation).collect();
+    Character { begin, build, fragments, root, rotations }
+}
+
+/// Numbers instances in the order in which people meet them; where time comes round one is another in every lap.
+fn number_instances(chains: Chains, characters: &mut [Character]) -> Vec<Instance> {
+    let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
+    let instances_of_a_lap = if chains.domain.cycle.loops() { LAP } else { u32::MAX };
+    let mut instances = Vec::new();
+    for (person, character) in characters.iter_mut().enumerate() {
+        let roles: BTreeMap<u32, u32> = chains.pieces(person).map(|p| (p.instance, p.role)).collect();
+        for f in &mut character.fragments {
+            let kind = chains.library.roles[roles[&(f.instance % instances_of_a_lap)] as usize].kind;
+            f.instance = *numbers.entry(f.instance).or_insert_with(|| {
+                instances.push(Instance { kind });
+                instances.len() as u32 - 1
+            });
+        }
+    }
+    instances
 }
 
 /// What is kept of a life: of three laps the second, its last frame being the first of the third. Where the ground
