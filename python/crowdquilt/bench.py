@@ -40,15 +40,19 @@ def row(area: str, name: str, ours: float, unit: str = "", reference: float | No
     return Row(area, name, ours, unit, reference, source, ratio)
 
 
-def tiling(seeds: int, say: Say) -> list[Row]:
-    """The paper's static scenes, denser ones and larger ones."""
-    with tempfile.TemporaryDirectory() as folder:
-        samples.write(Path(folder), 1)
-        patches = patch.cut(Path(folder))
-    figures = [figure for scene in STATIC for figure in static(scene, patches, seeds, say)]
-    figures += [figure for scene in EXAMPLES for figure in example(scene, patches, seeds, say)]
-    figures += repeating(patches, seeds, say)
-    figures += growth(patches, say)
+def tiling(seeds: int, say: Say, patches: PatchSet | None = None) -> list[Row]:
+    """The paper's scenes, denser ones and larger ones; with another patch set only those that any set can play."""
+    figures = []
+    if patches is None:
+        with tempfile.TemporaryDirectory() as folder:
+            samples.write(Path(folder), 1)
+            patches = patch.cut(Path(folder))
+        figures += [figure for scene in STATIC for figure in static(scene, patches, seeds, say)]
+        figures += [figure for scene in EXAMPLES for figure in example(scene, patches, seeds, say)]
+        figures += repeating(patches, seeds, say)
+        figures += growth(patches, say)
+    else:
+        figures += [figure for scene in STATIC for figure in static(scene, patches, seeds, say, published=True)]
     kinds = row("tiling", "kinds to choose from", len(patches), "", 43, PAPER)
     source = {True: PAPER, False: ""}
     return [
@@ -207,7 +211,7 @@ def stage(seeds: int, say: Say) -> list[Row]:
     return rows
 
 
-AREAS: dict[str, Callable[[int, Say], list[Row]]] = {
+AREAS: dict[str, Callable[..., list[Row]]] = {
     "motion": captures,
     "tiling": tiling,
     "world": worlds,

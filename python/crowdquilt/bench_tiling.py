@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import json
+import os
+import subprocess
+import sys
+import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -46,8 +51,9 @@ STATIC = (
     Static("density-144", 144, 0.25),
     Static("density-max", 200, 0.15),
 )
-SIDES = (8, 16, 32)
-"""Sides of the squares over which growth is measured, metres."""
+SQUARES = ((8, 0.5), (16, 0.5), (32, 0.5), (120, 0.4862))
+"""Sides of the squares over which growth is measured, metres, and people per square metre: the largest holds 7,000."""
+THREADED = (40, 0.5)
 BASELINE = ("static-173", "static-374", "static-490")
 """Rows at which Algorithms 1 and 2 are measured as well."""
 
@@ -104,9 +110,10 @@ def seams_of(report: check.Report) -> dict[str, float]:
     return worst
 
 
-def static(scene: Static, patches: PatchSet, seeds: int, say: Say) -> list[Figure]:
-    """The figures of a static scene: medians over the seeds, and the slowest."""
-    wish = Scene.demo().replace(characters=scene.characters, interaction=scene.interaction)
+def static(scene: Static, patches: PatchSet, seeds: int, say: Say, published: bool = False) -> list[Figure]:
+    """The figures of a static scene: medians over the seeds, and the slowest. `published`: as many people as there."""
+    people = int(scene.people) if published and scene.people else scene.characters
+    wish = Scene.demo().replace(characters=people, interaction=scene.interaction)
     made = runs(wish, patches, seeds)
     figures = figures_of(scene, made, "")
     if scene.row in BASELINE:
@@ -162,18 +169,51 @@ def figures_of(scene: Static | Example, made: list[Run], prefix: str) -> list[Fi
     ]
 
 
+ALONE = """
+import json, resource, sys
+from crowdquilt import check
+from crowdquilt._core import PatchSet, Scene, tile
+outcome = tile(Scene.from_toml(sys.argv[2]), PatchSet.load(sys.argv[1]), seed=1, time=120.0)
+ok = outcome.status == "perfect" and check.check(outcome.crowd).ok
+peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+people = check.summary(outcome.crowd).characters
+print(json.dumps({"secs": outcome.solve_secs, "people": people, "ok": ok, "peak": peak}))
+"""
+
+
+def alone(patches: PatchSet, scene: str, threads: int | None = None) -> dict[str, float]:
+    """One run of a scene in a process of its own, with so many threads."""
+    env = os.environ | ({"RAYON_NUM_THREADS": str(threads)} if threads else {})
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "set.patches"
+        patches.save(file)
+        command = [sys.executable, "-c", ALONE, str(file), scene]
+        done = subprocess.run(command, env=env, capture_output=True, text=True, check=True)
+    told: dict[str, float] = json.loads(done.stdout)
+    return told
+
+
+def square(side: int, density: float) -> str:
+    """A square scene of 20 s, as a file."""
+    corners = f"[[0, 0], [{side}, 0], [{side}, {side}], [0, {side}]]"
+    return f"region = {corners}\nduration_secs = 20\ndensity = {density}\ninteraction = 0.26\n"
+
+
 def growth(patches: PatchSet, say: Say) -> list[Figure]:
-    """Time per character as the square grows, half a person per square metre."""
+    """Time per character as the square grows, about half a person per square metre; and what a second thread gains."""
     figures = []
-    for side in SIDES:
-        corners = f"[[0, 0], [{side}, 0], [{side}, {side}], [0, {side}]]"
-        text = f"region = {corners}\nduration_secs = 20\ndensity = 0.5\ninteraction = 0.26\n"
-        run = runs(Scene.from_toml(text), patches, 1)[0]
-        people = run.summary.characters
-        figures.append(Figure("area-growth", f"{side} x {side} m, {people} people", run.outcome.solve_secs, "s"))
-        per_person = 1000 * run.outcome.solve_secs / people
-        figures.append(Figure("area-growth", f"{side} x {side} m, per character", per_person, "ms"))
-        say(f"tiling: area-growth: {people} people in {run.outcome.solve_secs:.2f} s")
+    for side, density in SQUARES:
+        run = alone(patches, square(side, density))
+        name, people = f"{side} x {side} m", int(run["people"])
+        figures += [
+            Figure("area-growth", f"{name}, {people} people", run["secs"], "s"),
+            Figure("area-growth", f"{name}, per character", 1000 * run["secs"] / people, "ms"),
+            Figure("area-growth", f"{name}, peak memory of the process", run["peak"] / 2**20, "GiB"),
+            Figure("area-growth", f"{name}, perfect and checked", float(run["ok"])),
+        ]
+        say(f"tiling: area-growth: {people} people in {run['secs']:.2f} s")
+    one, two = (alone(patches, square(*THREADED), threads)["secs"] for threads in (1, 2))
+    figures.append(Figure("area-growth", f"{THREADED[0]} x {THREADED[0]} m, one thread / two", one / two))
     return figures
 
 

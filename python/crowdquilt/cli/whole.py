@@ -61,13 +61,21 @@ def bench(
     area: Annotated[str | None, typer.Argument(help=f"One of: {', '.join(benches.AREAS)}. All if not given.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
     seeds: Annotated[int, typer.Option(min=1, help="Runs per row; the median counts.")] = 5,
+    patches: Annotated[Path | None, typer.Option(help="Tile with this patch set instead of the samples' one.")] = None,
 ) -> None:
     """Measure what we reach beside the reference."""
     if area is not None and area not in benches.AREAS:
         raise CrowdquiltError(f"bench: expected one of {', '.join(benches.AREAS)}, found {area!r}")
+    if patches is not None and area != "tiling":
+        raise CrowdquiltError("bench: --patches goes with `bench tiling`")
+
+    def say(line: str) -> None:
+        print(line, file=sys.stderr)
+
     rows = []
     for name in [area] if area else list(benches.AREAS):
-        rows += benches.AREAS[name](seeds, lambda line: print(line, file=sys.stderr))
+        own = [PatchSet.load(patches)] if patches is not None else []
+        rows += benches.AREAS[name](seeds, say, *own)
     if as_json:
         print(json.dumps([asdict(row) for row in rows], indent=2))
     else:

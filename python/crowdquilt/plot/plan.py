@@ -6,6 +6,7 @@ Seen from above, x points right and z points down the sheet: drawn with z upward
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -64,7 +65,7 @@ def plan(
 
 def borders(axes: Axes, low: np.ndarray, high: np.ndarray, period: np.ndarray) -> None:
     """Lines where one tile goes on into the next."""
-    dashed = {"color": style.INK, "linewidth": 0.9, "linestyle": (0, (5, 4)), "zorder": 1.5}
+    dashed: dict[str, Any] = {"color": style.INK, "linewidth": 0.9, "linestyle": (0, (5, 4)), "zorder": 1.5}
     if period[0] > 0:
         for x in np.arange(low[0], high[0] + 0.5 * period[0], period[0]):
             axes.plot([x, x], [low[1], high[1]], **dashed)
@@ -182,7 +183,8 @@ def boxes(axes: Axes, crowd: Crowd, secs: float) -> None:
         layer = 5.5 if y < height else 6.5
 
         def corner(u: float, v: float) -> np.ndarray:
-            return np.array([x, z]) + u * width / 2 * left + v * depth / 2 * ahead  # noqa: B023
+            place: np.ndarray = np.array([x, z]) + u * width / 2 * left + v * depth / 2 * ahead  # noqa: B023
+            return place
 
         for across, colour in ((1.0, "#b68a5a"), (0.16, "#d9c7a3")):
             outline = [corner(1, across), corner(1, -across), corner(-1, -across), corner(-1, across)]
