@@ -131,7 +131,7 @@ fn references_that_lead_nowhere_are_named() {
     refused(
         &format!("/nodes/{body}/mesh"),
         json!(9),
-        &format!("node {body}: expected one of 2 meshes, found number 9"),
+        &format!("node {body}: expected one of 3 meshes, found number 9"),
     );
     let piece = "/meshes/0/primitives/0";
     refused(&format!("{piece}/attributes/POSITION"), json!(999), "mesh 0 primitive 0 POSITION: expected one of");

@@ -248,12 +248,16 @@ fn captured_depth(crowd: &Crowd, parts: &[Part], prop: &Prop, character: usize, 
     depths.fold(0.0, f32::max)
 }
 
-/// True if a box that nobody holds is where the capture has people sit on one.
+/// True if a box that nobody holds is where the capture has people sit on one, or has one lie that is put down before time
+/// begins or taken up after it ends.
 fn stands_by(part: &Part, prop: &Prop) -> bool {
-    let clock = part.clock_range().0;
-    let world_from_patch = part.deformed_at(clock).then(part.captured_at(clock).inverse());
-    let rests = part.kind.props.iter().filter(|p| p.holds.is_empty()).filter_map(|p| p.before);
-    rests.into_iter().any(|at| at.carried(world_from_patch).middle.distance(prop.places[0].middle) <= ASTRAY)
+    let (begin, end) = part.clock_range();
+    let lies = |at: Upright, clock: u32| {
+        let world_from_patch = part.deformed_at(clock).then(part.captured_at(clock).inverse());
+        at.carried(world_from_patch).middle.distance(prop.places[0].middle) <= ASTRAY
+    };
+    let mut rests = part.kind.props.iter().flat_map(|p| [p.before.map(|at| (at, begin)), p.after.map(|at| (at, end))]);
+    rests.any(|rest| rest.is_some_and(|(at, clock)| lies(at, clock)))
 }
 
 /// Between two captured frames the deeper of them.
