@@ -342,7 +342,7 @@ fn files_of_every_version_are_read() {
     let crowd = Crowd::load(&folder.join("v1.crowd")).unwrap();
     assert_eq!((crowd.characters.len(), crowd.props.len()), (1, 0));
     assert!(check(&crowd).ok(), "{}", check(&crowd));
-    for (bytes, magic, newest) in [(set.to_bytes(), "CQPATCH", 2), (crowd.to_bytes(), "CQCROWD", 3)] {
+    for (bytes, magic, newest) in [(set.to_bytes(), "CQPATCH", 2), (crowd.to_bytes(), "CQCROWD", 4)] {
         let mut newer = bytes.clone();
         newer[8] = 9;
         let error = match magic {

@@ -62,7 +62,17 @@ fn is_partner(chains: Chains, prop: &Prop, person: TrackId, tick: i32) -> bool {
     let instance = |t: TrackId| chains.piece_at(t, tick).map(|p| p.instance);
     let mine = instance(person);
     let mut holders = prop.holders(tick as u32).map(|h| h as TrackId);
-    holders.any(|h| h == person || instance(h) == mine) || is_lifting(chains, prop, person, tick)
+    holders.any(|h| h == person || instance(h) == mine)
+        || is_lifting(chains, prop, person, tick)
+        || changes_hands_in(chains, prop, mine, tick)
+}
+
+/// True while the box lies there within the patch in which somebody puts it down or takes it up.
+fn changes_hands_in(chains: Chains, prop: &Prop, instance: Option<u32>, tick: i32) -> bool {
+    prop.holds.iter().any(|h| {
+        let here = chains.piece_at(h.character as TrackId, tick).filter(|p| Some(p.instance) == instance);
+        here.is_some_and(|p| [h.begin, h.end].into_iter().any(|f| (p.begin..=p.end).contains(&(f as i32))))
+    })
 }
 
 /// True while a person is in the patch in which they take the lying box up, put it down or sit on it.

@@ -75,7 +75,7 @@ const ABOVE_WISH: f32 = 1.05;
 const SWEEP_TRIES: usize = 60;
 const SWEEP_TICKS: i32 = 30;
 /// Rounds after which patches of several people are given up for a fault.
-const GENTLE_ROUNDS: usize = 3;
+const GENTLE_ROUNDS: usize = 6;
 /// States expanded to mend a fault.
 const MEND_EXPANSIONS: usize = 1500;
 /// How often patches of several people that mending cost are made up for.

@@ -37,8 +37,8 @@ struct Cycle<'a> {
 /// # Errors
 /// If nobody walks straight on, or stands, in it.
 pub fn gait_table(set: &PatchSet) -> Result<GaitTable> {
-    // Who leaps over something ends as they begin, but does not walk.
-    let walks = |k: &&PatchKind| !k.labels.iter().any(|label| label == "jump");
+    // Who leaps over something or hops ends as they begin, but does not walk.
+    let walks = |k: &&PatchKind| !k.labels.iter().any(|label| label == "jump" || label == "hop");
     let alone = set.kinds.iter().filter(|k| k.people() == 1 && k.props.is_empty()).filter(walks);
     let motions: Vec<&Fragment> = alone.map(|k| &k.fragments[0]).collect();
     let mut best: BTreeMap<i32, Cycle> = BTreeMap::new();
