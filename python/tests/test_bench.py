@@ -13,6 +13,7 @@ from crowdquilt import bench, bench_tiling
 def test_rows_are_measured_on_the_scene(monkeypatch: pytest.MonkeyPatch) -> None:
     class Small:
         from_toml = staticmethod(cq.Scene.from_toml)
+        load = staticmethod(cq.Scene.load)
 
         @staticmethod
         def demo() -> cq.Scene:

@@ -97,7 +97,7 @@ def test_what_cannot_be_done_is_refused_with_its_name(sample_set: cq.PatchSet) -
         head = 'periodic = ["x"]\n' if key == "periodic" else ""
         scene = cq.Scene.from_toml(head + CART + text)
         with pytest.raises(cq.CrowdquiltError, match=key):
-            cq.tiling.tile(scene, sample_set, method="paper" if key == "periodic" else "engine")
+            cq.tiling.tile(scene, sample_set, method="paper")
 
 
 def test_a_crowd_that_repeats_is_unrolled_checked_and_drawn(sample_set: cq.PatchSet, tmp_path: Path) -> None:

@@ -27,10 +27,10 @@ def validate(glb: Path) -> tuple[int, dict]:
 
 
 def primitives(glb: Path) -> int:
-    """How many pieces there are to draw, from the file's JSON."""
+    """How many pieces of people there are to draw, from the file's JSON."""
     raw = glb.read_bytes()
     found = json.loads(raw[20 : 20 + int.from_bytes(raw[12:16], "little")])
-    meshes = [node["mesh"] for node in found.get("nodes", []) if "mesh" in node]
+    meshes = [node["mesh"] for node in found.get("nodes", []) if "mesh" in node and "skin" in node]
     return sum(len(found["meshes"][mesh]["primitives"]) for mesh in meshes)
 
 
