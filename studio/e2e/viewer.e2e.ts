@@ -187,7 +187,7 @@ describe("broken files", () => {
       new TextEncoder().encode("PK, not a crowd at all, but longer than a prelude"),
       /byte 0: expected the magic bytes "CQCROWD"/,
     ],
-    ["newer", Uint8Array.from(bytes.slice(0, 64)).fill(9, 8, 9), /byte 8: expected version 1 or 2 or 3, found 9/],
+    ["newer", Uint8Array.from(bytes.slice(0, 64)).fill(9, 8, 9), /byte 8: expected version 1 or 2 or 3 or 4, found 9/],
   ];
   it.each(cases)("give one clear message: %s", async (name, content, message) => {
     if (content) site.server.data.set(`${name}.crowd`, content);
