@@ -50,5 +50,5 @@ pub use engine::tile;
 pub use grid::Grid;
 pub use outcome::{Method, Options, Outcome, Phase, Progress, Status};
 pub use prefer::{Field, Form, Preference, Term};
-pub use study::study;
 pub use scene::{KindFilter, Periodic, Placed, Scene, Sink, Source, Team};
+pub use study::study;
