@@ -13,7 +13,7 @@ import typer
 from crowdquilt import bench as benches
 from crowdquilt import demo as demos
 from crowdquilt._core import CrowdquiltError, Outcome, PatchSet, Scene
-from crowdquilt.cli.app import CHECK_FAILED, NOT_PERFECT, app, console, example
+from crowdquilt.cli.app import CHECK_FAILED, ENDS, app, console, example
 from crowdquilt.cli.progress import solve
 
 
@@ -50,10 +50,8 @@ def tell(out: Path) -> None:
         console.print(line, soft_wrap=True, markup=False)
     view = "make view" if out == Path("out/demo") else f"crowdquilt view {out / 'crowd.crowd'}"
     console.print(f"Watch it: [bold]{view}[/bold]   Look at it: {out / 'plan.png'}, {out / 'loom.png'}", soft_wrap=True)
-    if data["status"] == "imperfect" or not data["characters"]:
-        raise typer.Exit(NOT_PERFECT)
-    if not data["ok"]:
-        raise typer.Exit(CHECK_FAILED)
+    if code := ENDS[data["status"]] or (0 if data["ok"] else CHECK_FAILED):
+        raise typer.Exit(code)
 
 
 @app.command(epilog=example("bench", "bench tiling --json"))
