@@ -30,7 +30,7 @@ use super::rehearsal::Rehearsal;
 use super::seed::seed_person;
 use super::session::{Session, first_agenda, further_agenda};
 use super::source::let_in;
-use super::team::line_up;
+use super::team::{line_up, team_of};
 use super::tracks::{Tracks, Window};
 use super::{Scene, paper};
 use crate::patch::PatchSet;
@@ -241,7 +241,10 @@ fn engine(
     let Engine { mut crew, clock, agenda, keeper, .. } = engine;
     crew.tracks.occupancy.close();
     let status = status(crew.tracks.chains(), scene, faults.len(), agenda.placed);
-    let crowd = bake(crew.tracks.chains(), scene, options.seed, played);
+    let mut crowd = bake(crew.tracks.chains(), scene, options.seed, played);
+    for (person, character) in crowd.characters.iter_mut().enumerate() {
+        character.team = team_of(&crew.tracks, person).map(|team| team as u32);
+    }
     let (interpenetrations, unkept) = (faults.len(), keeper.into_problem());
     Ok(Outcome { crowd, status, danglings: 0, interpenetrations, solve_secs: clock.secs(), unkept })
 }

@@ -98,7 +98,7 @@ def tile(
     if kept and not time > 0:
         raise typer.Exit(keeping.report(kept, where, kinds))
     crowd_file = keeping.crowd_file(out, resume)
-    plan = keeping.plan(crowd_file, resume, checkpoint, no_checkpoint or method == Method.paper)
+    plan = keeping.plan(crowd_file, checkpoint, no_checkpoint or method == Method.paper)
     try:
         outcome = solve(
             where,

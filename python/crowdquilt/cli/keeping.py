@@ -34,11 +34,11 @@ class Plan:
             console.print(f"{self.file}: go on with [bold]crowdquilt tile --resume {self.file}[/bold]", soft_wrap=True)
 
 
-def plan(crowd: Path, resume: Path | None, wanted: Path | None, unwanted: bool) -> Plan:
-    """Checkpoints go where they are wanted, else beside the crowd; those of a resumed run where it was resumed from."""
+def plan(crowd: Path, wanted: Path | None, unwanted: bool) -> Plan:
+    """Checkpoints go where they are wanted, else beside the crowd."""
     if unwanted and wanted:
         raise typer.BadParameter("expected no file: no checkpoints are written", param_hint="--checkpoint")
-    file = None if unwanted else wanted or resume or crowd.with_suffix(SUFFIX)
+    file = None if unwanted else wanted or crowd.with_suffix(SUFFIX)
     if file:
         file.parent.mkdir(parents=True, exist_ok=True)
     return Plan(file, stays=wanted is not None)
@@ -46,9 +46,11 @@ def plan(crowd: Path, resume: Path | None, wanted: Path | None, unwanted: bool) 
 
 def crowd_file(out: Path | None, resume: Path | None) -> Path:
     """The crowd to write: beside the checkpoint that a run goes on from, if none is given."""
-    if out is None and resume is None:
+    if out is not None:
+        return out
+    if resume is None:
         raise typer.BadParameter("expected a crowd to write", param_hint="--out")
-    return out or resume.with_suffix(".crowd") if resume else out
+    return resume.with_suffix(".crowd")
 
 
 def set_file(patches: Path | None, kept: Checkpoint | None, resume: Path | None) -> Path:

@@ -39,7 +39,7 @@ pub(in super::super) fn thaw<'a>(
         let mut pieces: Vec<Piece> = Vec::with_capacity(life.len());
         for (k, laid) in life.iter().enumerate() {
             let piece = piece(laid, &kinds, library, domain).map_err(|p| bad(place(person, k), p))?;
-            follows(pieces.last(), &piece, library).map_err(|p| bad(place(person, k), p))?;
+            follows(pieces.last(), &piece, library, domain).map_err(|p| bad(place(person, k), p))?;
             casts.entry(piece.instance).or_default().push(outline(&piece));
             pieces.push(piece);
         }
@@ -94,9 +94,18 @@ fn is_near(a: Ground, b: Ground) -> bool {
     a.position.distance(b.position) <= NEAR && wrap_angle(a.heading - b.heading).abs() <= TURNED
 }
 
-/// A piece begins where the one before has ended.
-fn follows(before: Option<&Piece>, piece: &Piece, library: &Library) -> std::result::Result<(), Problem> {
+/// A piece begins where the one before has ended, as far as that is seen: what changes at the end of time may leave a
+/// gap after it.
+fn follows(
+    before: Option<&Piece>,
+    piece: &Piece,
+    library: &Library,
+    domain: &Domain,
+) -> std::result::Result<(), Problem> {
     let Some(before) = before else { return Ok(()) };
+    if !domain.cycle.loops() && (before.end >= domain.horizon || piece.begin <= 0) {
+        return Ok(());
+    }
     let (exit, entry) = (library.exit_of(before), library.entry_of(piece));
     match exit.tick == entry.tick && exit.group == entry.group && is_near(exit.at, entry.at) {
         true => Ok(()),
