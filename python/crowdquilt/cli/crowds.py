@@ -80,8 +80,8 @@ def tile(
 ) -> None:
     """Tile a scene with motion patches until no end is loose and nobody collides.
 
-    Every ten seconds, and when the search ends or is stopped by Ctrl-C or SIGTERM, the tiling is written to a checkpoint
-    beside the crowd. A run that was killed goes on from it with --resume.
+    Every ten seconds, and when the search ends or is stopped by Ctrl-C or SIGTERM, the tiling is written to a
+    checkpoint beside the crowd. A run that was killed goes on from it with --resume.
 
     Whatever was reached is saved. Exit code 0: perfect. 3: clean, but short of what was wished for. 4: faults or loose
     ends are left. 2: bad input.

@@ -22,7 +22,7 @@ def demo(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder to write to.")],
     scene: Annotated[Path | None, typer.Option(help="Scene (.toml); 12 x 12 m for 20 s if not given.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Same seed, same crowd.")] = 1,
-    time: Annotated[float, typer.Option(help="Longest search, in seconds.")] = 60.0,
+    time: Annotated[float, typer.Option(help="Longest time for search and bodies, in seconds.")] = 60.0,
     threads: Annotated[int | None, typer.Option(min=1, help="Threads; all cores if not given.")] = None,
     show: Annotated[bool, typer.Option("--show", help="Only tell what the folder holds already.")] = False,
 ) -> None:
@@ -58,7 +58,7 @@ def tell(out: Path) -> None:
 def bench(
     area: Annotated[str | None, typer.Argument(help=f"One of: {', '.join(benches.AREAS)}. All if not given.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
-    seeds: Annotated[int, typer.Option(min=1, help="Runs per row; the median counts.")] = 5,
+    seeds: Annotated[int, typer.Option(min=1, help="Runs per row: perfect k of so many, least, median, most.")] = 5,
     patches: Annotated[Path | None, typer.Option(help="Tile with this patch set instead of the samples' one.")] = None,
 ) -> None:
     """Measure what we reach beside the reference."""
