@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
 import signal
@@ -48,7 +47,8 @@ def test_a_killed_run_goes_on(tmp_path: Path, patches: Path, count: int) -> None
     # What is there is told without going on, and nothing changes.
     bytes_before = checkpoint.read_bytes()
     told = crowdquilt("tile", "--resume", checkpoint, "--time", 0)
-    assert told.returncode == 3 and re.search(rf"{held} people, \d+ patches", told.stdout), told.stdout + told.stderr
+    assert told.returncode == (3 if held < 90 else 0), told.stdout + told.stderr
+    assert re.search(rf"{held} people, \d+ patches", told.stdout), told.stdout
     assert ", 0 faults" in told.stdout and "wished for: 90 people" in told.stdout
     assert checkpoint.read_bytes() == bytes_before and not out.exists()
     # The same checkpoint leads to the same crowd with one thread and with two; it goes when the crowd is perfect.
@@ -81,9 +81,8 @@ def test_checkpoints_are_where_they_are_wanted(tmp_path: Path, patches: Path, sc
     assert done.returncode == 0, done.stdout + done.stderr
     assert wanted.exists() and len(cq.Crowd.load(denser)) == 14
     without = tmp_path / "without.crowd"
-    short = crowdquilt(
-        "tile", patches, "-o", without, "--scene", scene, "--characters", 900, "--time", 1, "--no-checkpoint"
-    )
+    wishes = ("--scene", scene, "--characters", 900, "--time", 1)
+    short = crowdquilt("tile", patches, "-o", without, *wishes, "--no-checkpoint")
     assert short.returncode == 3 and not without.with_suffix(".tiling").exists()
     assert "short of what was wished for" in short.stdout and "of 900 characters found room" in short.stdout
 
@@ -128,9 +127,8 @@ def test_bad_checkpoints_end_in_one_message(tmp_path: Path, patches: Path, scene
     ]:
         done = crowdquilt("tile", *args, "-o", tmp_path / "b.crowd")
         assert done.returncode == 2, (args, done.stdout, done.stderr)
-        assert expected in " ".join(done.stderr.replace("│", " ").split()) and "Traceback" not in done.stderr, (
-            done.stderr
-        )
+        told = " ".join(done.stderr.replace("│", " ").split())
+        assert expected in told and "Traceback" not in told, told
     assert not (tmp_path / "b.crowd").exists()
 
 
@@ -174,4 +172,4 @@ def test_teams_are_in_the_crowd_and_its_picture(tmp_path: Path, patches: Path) -
     sheet = plot.plan(crowd, tmp_path / "teams.svg", time=1.0)
     words = [text.get_text() for text in sheet.texts]
     assert any(word.startswith("red ") for word in words) and any(word.startswith("blue ") for word in words)
-    assert os.path.getsize(tmp_path / "teams.svg") > 1000
+    assert (tmp_path / "teams.svg").stat().st_size > 1000
