@@ -85,6 +85,8 @@ const MEND_EXPANSIONS: usize = 1500;
 const REFILLS: usize = 4;
 /// Rounds of mending.
 const MEND_ROUNDS: usize = 30;
+/// How fast a long step of a run is forgotten when others are shorter.
+const STEPS_FADE: f64 = 0.9;
 /// Time between two reports of progress.
 const REPORT_EVERY: Duration = Duration::from_millis(50);
 
@@ -169,6 +171,9 @@ pub(super) struct Clock<'a> {
     limit: Duration,
     /// Seconds of it that are to be left for what comes later.
     reserve: f64,
+    /// When it was asked last, and how long a step takes from one time to the next, seconds.
+    asked: Instant,
+    step: f64,
     stopped: bool,
     progress: &'a mut dyn FnMut(&Progress) -> bool,
 }
@@ -181,6 +186,8 @@ impl<'a> Clock<'a> {
             last_report: now,
             limit: Duration::from_secs_f64(limit_secs.max(0.0)),
             reserve: 0.0,
+            asked: now,
+            step: 0.0,
             stopped: false,
             progress,
         }
@@ -189,6 +196,8 @@ impl<'a> Clock<'a> {
     /// False once time is up or the caller has had enough.
     pub(super) fn goes_on(&mut self, state: impl FnOnce() -> Progress) -> bool {
         let now = Instant::now();
+        self.step = (now - self.asked).as_secs_f64().max(self.step * STEPS_FADE);
+        self.asked = now;
         if !self.stopped && now - self.last_report >= REPORT_EVERY {
             self.last_report = now;
             let secs = self.secs();
@@ -199,7 +208,7 @@ impl<'a> Clock<'a> {
 
     /// True once time is up or the caller has had enough.
     pub(super) fn is_over(&self) -> bool {
-        self.stopped || self.secs() + self.reserve >= self.limit.as_secs_f64()
+        self.stopped || self.secs() + self.step + self.reserve >= self.limit.as_secs_f64()
     }
 
     /// Part of the time that has gone.
