@@ -89,16 +89,16 @@ fn example(name: &str) -> Scene {
 fn every_piece_of_every_kind_of_scene_is_there_again() {
     for name in ["static-3", "dynamic", "sources", "hopping", "boxes", "keyframing", "repeating-tile", "endless-tile"] {
         let scene = example(name);
-        for reports in [1, 6] {
-            let kept = stopped(&scene, &SAMPLES, reports, &format!("{name}-{reports}"));
-            assert_eq!(kept.scene, scene);
-            assert_eq!(Checkpoint::from_bytes(&kept.to_bytes()).unwrap(), kept);
-            if kept.stage() < Stage::Mend {
-                assert_eq!(kept_again(&kept, &SAMPLES, &format!("{name}-again")), kept, "{name} after {reports}");
-            }
+        let kept = stopped(&scene, &SAMPLES, 5, name);
+        assert_eq!(kept.scene, scene);
+        assert_eq!(Checkpoint::from_bytes(&kept.to_bytes()).unwrap(), kept);
+        if kept.stage() < Stage::Mend {
+            assert_eq!(kept_again(&kept, &SAMPLES, &format!("{name}-again")), kept, "{name}");
+        }
+        if !["sources", "boxes", "keyframing", "endless-tile"].contains(&name) {
+            continue;
         }
         // Through to the end, and on to a perfect one.
-        let kept = stopped(&scene, &SAMPLES, 3, &format!("{name}-through"));
         let outcome = on(&kept, &scene, &SAMPLES, 120.0, None).unwrap();
         let report = check(&outcome.crowd);
         println!(

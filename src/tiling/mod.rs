@@ -54,6 +54,6 @@ pub use engine::{tile, tile_in};
 pub use grid::Grid;
 pub use outcome::{Method, Options, Outcome, Phase, Progress, Status};
 pub use prefer::{Field, Form, Preference, Term};
-pub use study::study;
 pub use scene::{KindFilter, Periodic, Placed, Scene, Sink, Source, Team};
 pub use session::{Review, Session, review};
+pub use study::study;

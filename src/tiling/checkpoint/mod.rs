@@ -18,7 +18,7 @@ use std::path::Path;
 use self::lay::Laid;
 use super::Scene;
 use super::tracks::Tracks;
-use crate::container::write_whole;
+use crate::container::{Writer, write_whole};
 use crate::patch::PatchSet;
 use crate::{Error, Result};
 
@@ -171,9 +171,11 @@ impl About {
     }
 }
 
-/// Tells patch sets apart.
-pub(super) fn digest_of(set: &PatchSet) -> String {
-    format!("{:016x}", fnv(&set.to_bytes()))
+/// Tells patch sets apart, whatever has been found out about them.
+fn digest_of(set: &PatchSet) -> String {
+    let mut writer = Writer::default();
+    let header = set.write_into(&mut writer, "");
+    format!("{:016x}", fnv(&writer.finish(b"CQPATCH\0", 0, &header)))
 }
 
 /// FNV-1a with 64 bits, eight bytes at a time: finds what was damaged by chance, not what was forged.
