@@ -330,7 +330,7 @@ pub fn tile(
     if !(time > 0.0 && time <= 1e6) {
         return Err(PyValueError::new_err(format!("expected a time of more than 0 seconds, found {time}")));
     }
-    if !(checkpoint_every >= 0.0) {
+    if checkpoint_every.is_nan() || checkpoint_every < 0.0 {
         return Err(PyValueError::new_err(format!("expected seconds between checkpoints, found {checkpoint_every}")));
     }
     let keep = checkpoint.as_deref().map(|path| core::Keep {
