@@ -99,6 +99,12 @@ impl Occupancy {
         id
     }
 
+    /// True if there is room in the grid for all bodies of a piece.
+    pub fn has_room(&self, piece: &Piece) -> bool {
+        let room = |(tick, at): (i32, Vec2)| (self.cells[self.cell_of(tick, at)].count as usize) < CELL_BODIES;
+        (piece.shown_from..).zip(piece.bodies.iter().map(|b| b.position)).all(room)
+    }
+
     /// Gives the grid's memory back; from now on only pieces can be asked for.
     pub fn close(&mut self) {
         self.cells = Vec::new();
