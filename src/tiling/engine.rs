@@ -27,7 +27,7 @@ use super::pace::Pace;
 use super::passage::Passages;
 use super::plan::Plan;
 use super::rehearsal::Rehearsal;
-use super::seed::{seed_person, stand_beside};
+use super::seed::{seed_person, settle, stand_beside};
 use super::session::{Session, first_agenda, further_agenda};
 use super::source::let_in;
 use super::team::{line_up, team_of};
@@ -497,6 +497,9 @@ impl Engine<'_> {
                 |tracks, _| tracks.tracks.len() < most,
             );
             failures = if made.contains(&true) { 0 } else { failures + count };
+            if failures > SEED_AGAIN {
+                self.crew.work(self.crew.batch, |_, draft, rng| settle(draft, STAND, rng), |_, _| true);
+            }
         }
     }
 

@@ -15,6 +15,7 @@ use super::library::{Library, Move};
 use super::occupancy::PieceId;
 use super::piece::Piece;
 use super::prefer::Stay;
+use super::tracks::{TrackId, Tracks, Window};
 use super::tryout::is_clean;
 use crate::geom::Ground;
 
@@ -25,8 +26,9 @@ const NEAREST: f32 = 0.4;
 const CLOSER: f32 = 0.05;
 /// One of so many begins a group of their own.
 const APART: u32 = 40;
-/// Whoever stands stays within this, metres.
+/// Whoever stands stays within this, and whoever is farther from the first place roams, metres.
 const ASTIR: f32 = 0.5;
+const ROAM: f32 = 1.0;
 
 /// Adds a person who is at a random place of the domain at first, until the end of time or out; one who begins with a box in the hands,
 /// or by taking one up, if so wished.
@@ -35,12 +37,43 @@ pub(super) fn seed_person(draft: &mut Draft, laden: bool, taste: Taste, rng: &mu
         let role = first_role(draft.base.library, laden, taste, rng);
         first_piece(draft, role, anywhere(draft, rng), rng)
     })?;
-    live(draft, first, taste, rng)?;
+    let pieces = life(draft, first, taste, rng)?;
+    draft.push_track(pieces);
     is_clean(draft).then_some(())
 }
 
 /// Adds a person who stands as near somebody who is there at first as there is room, all the time.
 pub(super) fn stand_beside(draft: &mut Draft, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+    let pieces = standing(draft, taste, rng)?;
+    draft.push_track(pieces);
+    is_clean(draft).then_some(())
+}
+
+/// Lets somebody who walks about alone stand beside somebody else instead, so that there is room for others.
+pub(super) fn settle(draft: &mut Draft, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+    let tracks = draft.base;
+    let track = rng.random_range(0..tracks.tracks.len());
+    let pieces = &tracks.tracks[track];
+    let here = tracks.piece(pieces[0]).entry().position;
+    let roams = |&id: &PieceId| tracks.piece(id).entry().position.distance(here) > ROAM;
+    let alone = |&id: &PieceId| tracks.people_of(id) == 1 && !tracks.piece(id).leaves_box();
+    let free = tracks.begins_open(track) && tracks.ends_open(track) && !is_laden(tracks, track);
+    if !free || !pieces.iter().all(alone) || !pieces.iter().any(roams) {
+        return None;
+    }
+    draft.hide(Window { track, from: 0, to: pieces.len() });
+    let pieces = standing(draft, taste, rng)?;
+    draft.set_track(track, pieces);
+    is_clean(draft).then_some(())
+}
+
+/// True if somebody begins with a box in the hands.
+fn is_laden(tracks: &Tracks, track: TrackId) -> bool {
+    tracks.library.laden[tracks.port(track, 0).group as usize]
+}
+
+/// The life of somebody who stands as near somebody else as there is room.
+fn standing(draft: &mut Draft, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Vec<PieceId>> {
     let tracks = draft.base;
     let (others, begin) = (tracks.tracks.len(), tracks.domain.frames().start.max(0));
     let other = rng.random_range(0..others + 1);
@@ -55,17 +88,15 @@ pub(super) fn stand_beside(draft: &mut Draft, taste: Taste, rng: &mut ChaCha8Rng
         first_piece(draft, role, place, rng)
     })?;
     let here = first.entry().position;
-    let pieces = live(draft, first, taste, rng)?;
-    let stays = pieces.iter().all(|&id| draft.piece(id).entry().position.distance(here) < ASTIR);
-    (stays && is_clean(draft)).then_some(())
+    let pieces = life(draft, first, taste, rng)?;
+    pieces.iter().all(|&id| draft.piece(id).entry().position.distance(here) < ASTIR).then_some(pieces)
 }
 
-/// Adds the life of somebody who begins with a piece; its pieces.
-fn live(draft: &mut Draft, first: Piece, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Vec<PieceId>> {
+/// The life of somebody who begins with a piece.
+fn life(draft: &mut Draft, first: Piece, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Vec<PieceId>> {
     let (entry, exit) = (draft.base.library.entry_of(&first), draft.base.library.exit_of(&first));
     let mut pieces = vec![draft.add(first)];
     pieces.extend(draft.lead_to_the_end(entry, exit, taste, rng)?);
-    draft.push_track(pieces.clone());
     Some(pieces)
 }
 
