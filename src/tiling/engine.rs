@@ -53,7 +53,7 @@ const GATHER_EXPANSIONS: usize = 300;
 /// More people per m^2 than that is dense: then so large a share of their time those who meet do so at least, since whoever
 /// comes and goes needs the more room.
 const DENSE: f32 = 0.85;
-const DENSE_TOGETHER: f32 = 0.5;
+const DENSE_TOGETHER: f32 = 0.65;
 /// The part of the people who then stand close together, up to 1.2 and from 2 people per m^2.
 const STANDERS: [f32; 2] = [0.3, 0.75];
 const STAND_DENSITIES: [f32; 2] = [1.2, 2.0];
@@ -270,7 +270,7 @@ fn engine(
 
 /// The denser the crowd, the more people rather stand than walk.
 fn calm(scene: &Scene) -> f32 {
-    (1.58 - density(scene)).clamp(0.3, 1.3)
+    (1.58 - density(scene)).clamp(0.1, 1.3)
 }
 
 /// People per m^2.
