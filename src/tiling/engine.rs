@@ -29,7 +29,8 @@ use super::seed::seed_person;
 use super::source::{arrivals, let_in};
 use super::team::line_up;
 use super::tracks::{Tracks, Window};
-use super::{Scene, paper};
+use super::wang::{Crosser, lead_across};
+use super::{Scene, paper, wang};
 use crate::patch::PatchSet;
 use crate::{Error, Result};
 
@@ -101,6 +102,9 @@ pub fn tile(
 ) -> Result<Outcome> {
     let set = &*admitted(scene, set, options.method)?;
     check_set(set)?;
+    if let Some(wang) = scene.wang {
+        return wang::tile(scene, wang, set, options, progress);
+    }
     let domain = Domain::new(scene)?;
     match options.method {
         Method::Engine => Ok(engine(scene, set, &domain, options, progress)),
@@ -182,19 +186,13 @@ fn engine(
 ) -> Outcome {
     let clock = Clock::new(options.time_secs, progress);
     let library = Library::new(set, scene.limits).preferring(&scene.preference).placing(&scene.placed).parting(scene);
-    let crew = Crew::new(Tracks::new(&library, domain), scene.region.area(), options.seed);
-    let taste = Taste { calm: calm(scene), expansions: library.steps(domain.horizon) * EXPANSIONS_PER_STEP };
     let passages = Passages::new(&library);
-    let plan = Plan::new(&library, &passages, domain.horizon, options.seed);
-    let mut engine = Engine { scene, crew, passages: &passages, plan, taste, clock, most: scene.characters };
+    let mut engine = Engine::new(scene, &passages, Tracks::new(&library, domain), options.seed, clock);
     let placed = engine.keyframes();
     engine.line_up();
     engine.let_in();
     engine.hurdle();
-    engine.gather();
-    engine.enrich(FIRST_PATIENCE);
-    engine.seed();
-    engine.enrich(ENRICH_PATIENCE);
+    engine.populate();
     let Rehearsal { played, faults, .. } = engine.finish();
     let Engine { mut crew, clock, .. } = engine;
     crew.tracks.occupancy.close();
@@ -204,6 +202,40 @@ fn engine(
     };
     let crowd = bake(crew.tracks.chains(), scene, options.seed, played);
     Outcome { crowd, status, danglings: 0, interpenetrations: faults.len(), solve_secs: clock.secs() }
+}
+
+/// Fills a tile of a plane: those who cross its borders are led there and from there, stopped or not, then `residents`
+/// are added as anywhere. The tiling and how many faults are left; `None` if somebody finds no way.
+pub(super) fn fill<'a>(
+    scene: &'a Scene,
+    passages: &'a Passages<'a>,
+    tracks: Tracks<'a>,
+    (crossers, residents): (&[Crosser], usize),
+    seed: u64,
+    clock: Clock<'a>,
+) -> Option<(Tracks<'a>, usize)> {
+    let mut engine = Engine::new(scene, passages, tracks, seed, clock);
+    if !engine.cross(crossers.iter().collect()) {
+        return None;
+    }
+    engine.most = crossers.len() + residents;
+    engine.populate();
+    let faults = engine.finish().faults.len();
+    Some((engine.crew.tracks, faults))
+}
+
+/// Mends a tiling that was put together, if it has faults.
+pub(super) fn mend_laid<'a>(
+    scene: &'a Scene,
+    passages: &'a Passages<'a>,
+    tracks: Tracks<'a>,
+    seed: u64,
+    clock: Clock<'a>,
+) -> (Tracks<'a>, Rehearsal) {
+    let mut rehearsal = Rehearsal::new(&tracks);
+    let mut engine = Engine::new(scene, passages, tracks, seed, clock);
+    engine.mend(&mut rehearsal);
+    (engine.crew.tracks, rehearsal)
 }
 
 /// The denser the crowd, the more people rather stand than walk.
@@ -237,7 +269,34 @@ struct Engine<'a> {
     most: usize,
 }
 
-impl Engine<'_> {
+impl<'a> Engine<'a> {
+    fn new(scene: &'a Scene, passages: &'a Passages<'a>, tracks: Tracks<'a>, seed: u64, clock: Clock<'a>) -> Self {
+        let (library, horizon) = (tracks.library, tracks.domain.horizon);
+        let crew = Crew::new(tracks, scene.region.area(), seed);
+        let taste = Taste { calm: calm(scene), expansions: library.steps(horizon) * EXPANSIONS_PER_STEP };
+        let plan = Plan::new(library, passages, horizon, seed);
+        Self { scene, crew, passages, plan, taste, clock, most: scene.characters }
+    }
+
+    /// Adds people who meet, then those who come alone, and patches of several people where company is short.
+    fn populate(&mut self) {
+        self.gather();
+        self.enrich(FIRST_PATIENCE);
+        self.seed();
+        self.enrich(ENRICH_PATIENCE);
+    }
+
+    /// Leads all who cross a tile's borders to and from where they do; false if somebody finds no way.
+    fn cross(&mut self, mut left: Vec<&Crosser>) -> bool {
+        let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
+        for _ in 0..ADMIT_ROUNDS {
+            let made =
+                self.crew.work(left.len(), |i, draft, rng| lead_across(draft, left[i], taste, rng), |_, _| true);
+            left = left.into_iter().zip(made).filter(|(_, made)| !made).map(|(crosser, _)| crosser).collect();
+        }
+        left.is_empty()
+    }
+
     fn goes_on(&mut self, phase: Phase) -> bool {
         let tracks = &self.crew.tracks;
         self.clock.goes_on(|| state(tracks, phase))
@@ -448,7 +507,7 @@ fn laden_every(library: &Library) -> usize {
 fn stir(draft: &mut Draft, track: usize, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let tracks = draft.base;
     let from = rng.random_range(0..tracks.tracks[track].len());
-    if tracks.people_of(tracks.tracks[track][from]) > 1 {
+    if !tracks.is_loose(tracks.tracks[track][from]) {
         return None;
     }
     let window = tracks.widen(Window { track, from, to: from + 1 }, STIR_TICKS);

@@ -38,6 +38,7 @@ mod torsos;
 mod tracks;
 mod tryout;
 mod view;
+mod wang;
 
 #[cfg(test)]
 #[path = "../../tests/common/mod.rs"]
@@ -49,4 +50,4 @@ pub use engine::tile;
 pub use grid::Grid;
 pub use outcome::{Method, Options, Outcome, Phase, Progress, Status};
 pub use prefer::{Field, Form, Preference, Term};
-pub use scene::{KindFilter, Periodic, Placed, Scene, Sink, Source, Team};
+pub use scene::{KindFilter, Periodic, Placed, Scene, Sink, Source, Team, Wang};

@@ -99,6 +99,28 @@ impl Occupancy {
         id
     }
 
+    /// Takes a piece in without a grid.
+    pub fn keep(&mut self, piece: Piece) -> PieceId {
+        self.pieces.push(Some(piece));
+        self.pieces.len() as PieceId - 1
+    }
+
+    /// The same pieces with a grid; `None` if they are too crowded for one.
+    pub fn opened(self, domain: &Domain, library: &Library) -> Option<Self> {
+        let mut open = Self { pieces: self.pieces, free: self.free, ..Self::new(domain, library) };
+        (0..open.pieces.len()).all(|id| open.show_if_room(id as PieceId)).then_some(open)
+    }
+
+    fn show_if_room(&mut self, id: PieceId) -> bool {
+        let Some(piece) = self.get(id) else { return true };
+        let cells = (piece.shown_from..).zip(&piece.bodies).map(|(tick, body)| self.cell_of(tick, body.position));
+        let room = cells.into_iter().all(|cell| (self.cells[cell].count as usize) < CELL_BODIES);
+        if room {
+            self.show(id);
+        }
+        room
+    }
+
     /// Gives the grid's memory back; from now on only pieces can be asked for.
     pub fn close(&mut self) {
         self.cells = Vec::new();
