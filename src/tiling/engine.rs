@@ -29,13 +29,15 @@ use super::seed::seed_person;
 use super::source::{arrivals, let_in};
 use super::team::line_up;
 use super::tracks::{Tracks, Window};
-use super::wang::{Crosser, lead_across};
+use super::wang::{Crosser, Gap, lead_across};
 use super::{Scene, paper, wang};
 use crate::patch::PatchSet;
 use crate::{Error, Result};
 
 /// Rounds of tries for people who come in at a source or begin in the place of a team.
 const ADMIT_ROUNDS: usize = 25;
+/// Rounds of tries for people who cross a tile's borders.
+const CROSS_ROUNDS: usize = 8;
 /// Rounds of tries for everybody in a placed patch to find their ways.
 const KEYFRAME_TRIES: usize = 25;
 /// States expanded for each of the ways.
@@ -205,7 +207,10 @@ fn engine(
 }
 
 /// Fills a tile of a plane: those who cross its borders are led there and from there, stopped or not, then `residents`
-/// are added as anywhere. The tiling and how many faults are left; `None` if somebody finds no way.
+/// are added as anywhere. The tiling and how many faults are left.
+///
+/// # Errors
+/// Those who find no way.
 pub(super) fn fill<'a>(
     scene: &'a Scene,
     passages: &'a Passages<'a>,
@@ -213,15 +218,13 @@ pub(super) fn fill<'a>(
     (crossers, residents): (&[Crosser], usize),
     seed: u64,
     clock: Clock<'a>,
-) -> Option<(Tracks<'a>, usize)> {
+) -> std::result::Result<(Tracks<'a>, usize), Vec<Gap>> {
     let mut engine = Engine::new(scene, passages, tracks, seed, clock);
-    if !engine.cross(crossers.iter().collect()) {
-        return None;
-    }
+    engine.cross(crossers.iter().collect())?;
     engine.most = crossers.len() + residents;
     engine.populate();
     let faults = engine.finish().faults.len();
-    Some((engine.crew.tracks, faults))
+    Ok((engine.crew.tracks, faults))
 }
 
 /// Mends a tiling that was put together, if it has faults.
@@ -286,15 +289,16 @@ impl<'a> Engine<'a> {
         self.enrich(ENRICH_PATIENCE);
     }
 
-    /// Leads all who cross a tile's borders to and from where they do; false if somebody finds no way.
-    fn cross(&mut self, mut left: Vec<&Crosser>) -> bool {
+    /// Leads all who cross a tile's borders to and from where they do; an error are those who find no way.
+    fn cross(&mut self, mut left: Vec<&Crosser>) -> std::result::Result<(), Vec<Gap>> {
         let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
-        for _ in 0..ADMIT_ROUNDS {
+        for _ in 0..CROSS_ROUNDS {
             let made =
                 self.crew.work(left.len(), |i, draft, rng| lead_across(draft, left[i], taste, rng), |_, _| true);
             left = left.into_iter().zip(made).filter(|(_, made)| !made).map(|(crosser, _)| crosser).collect();
         }
-        left.is_empty()
+        let stuck: Vec<Gap> = left.into_iter().map(|crosser| crosser.gap).collect();
+        if stuck.is_empty() { Ok(()) } else { Err(stuck) }
     }
 
     fn goes_on(&mut self, phase: Phase) -> bool {

@@ -131,7 +131,7 @@ impl<'a> Tracks<'a> {
     }
 
     /// Puts a piece in as it is, as an instance of its own.
-    fn put(&mut self, piece: Piece) -> PieceId {
+    pub fn put(&mut self, piece: Piece) -> PieceId {
         let instance = self.number(&mut vec![], NO_INSTANCE);
         self.occupancy.insert(Piece { instance, ..piece })
     }

@@ -33,7 +33,7 @@ use crate::geom::Polygon;
 use crate::patch::PatchSet;
 use crate::{Error, Result};
 
-pub(super) use self::tile::{Crosser, lead_across};
+pub(super) use self::tile::{Crosser, Gap, lead_across};
 
 /// Smallest and largest tile, metres: whoever crosses a border needs room on both sides of it.
 pub(super) const SMALLEST_TILE: f64 = 8.0;
@@ -131,6 +131,7 @@ pub(super) fn tile(
     let plane = Plane::new(scene, wang, options.seed);
     let one = one_tile(scene, wang);
     let ribbons = ribbons(&library, &one, wang, options.seed)?;
+    if std::env::var_os("WANG_DEBUG").is_some() { eprintln!("ribbons {:.2}", start.elapsed().as_secs_f64()); }
     let shop = Workshop {
         scene: &one,
         library: &library,
@@ -140,6 +141,7 @@ pub(super) fn tile(
         seed: options.seed,
     };
     let tiles = build(&shop, plane, options, progress)?;
+    if std::env::var_os("WANG_DEBUG").is_some() { eprintln!("tiles {} {:.2} faults {:?}", tiles.len(), start.elapsed().as_secs_f64(), tiles.values().map(|t| t.faults).collect::<Vec<_>>()); }
     let domain = Domain::new(scene)?;
     let people = Layout { plane, tiles: &tiles, ribbons: &ribbons, side: wang.tile }.people();
     let tracks = Tracks::laid(&library, &domain, people);
@@ -166,9 +168,7 @@ fn one_tile(scene: &Scene, wang: Wang) -> Scene {
 /// Who crosses edges: an even number, so that as many go as come.
 fn ribbons(library: &Library, one: &Scene, wang: Wang, seed: u64) -> Result<Ribbons> {
     let count = 2 * ((one.characters as f32 * CROSSING / 2.0).round() as usize).max(1);
-    let (low, high) = (Vec2::splat(-wang.tile), Vec2::splat(2.0 * wang.tile));
-    let around = Scene { region: Polygon::rectangle(low, high), ..one.clone() };
-    Ribbons::new(library, &Domain::new(&around)?, (wang.tile, wang.colours, count), seed)
+    Ribbons::new(library, one, (wang.tile, wang.colours, count), seed)
 }
 
 /// All tiles that a plane has, each once.
@@ -186,7 +186,9 @@ fn build(
         }
         let since = start.elapsed().as_secs_f64();
         let mut told = |p: &Progress| progress(&Progress { secs: since + p.secs, ..*p });
+        let t0 = start.elapsed().as_secs_f64();
         tiles.insert(key, shop.build(key, options.time_secs * BUILDING - since, &mut told)?);
+        if std::env::var_os("WANG_DEBUG").is_some() { eprintln!("{key:?} {:.2}", start.elapsed().as_secs_f64() - t0); }
     }
     Ok(tiles)
 }
@@ -205,6 +207,7 @@ fn mended<'a>(
             eprintln!("fault {f:?} at {:?}", tracks.state_at(f.a, f.tick).position);
         }
     }
+    if std::env::var_os("WANG_DEBUG").is_some() { eprintln!("rehearsed at {:.2}", clock.secs()); }
     if rehearsal.faults.is_empty() {
         return (tracks, rehearsal);
     }

@@ -10,12 +10,13 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::plane::{Across, mix};
-use crate::geom::Ground;
-use crate::tiling::bridge::{NO_INSTANCE, Port};
+use crate::geom::{Ground, Polygon};
+use crate::tiling::Scene;
+use crate::tiling::bridge::{Bridge, Goal, NO_INSTANCE, Port, Taste};
 use crate::tiling::domain::Domain;
 use crate::tiling::draft::{Desk, Draft};
 use crate::tiling::library::{Library, Move};
-use crate::tiling::piece::{Piece, Shift, depth, footprint, world_discs};
+use crate::tiling::piece::{Company, Piece, Shift, depth, footprint, world_discs};
 use crate::tiling::tracks::Tracks;
 use crate::tiling::tryout::is_clean;
 use crate::{Error, Result};
@@ -36,13 +37,18 @@ const END_ROOM: f32 = 0.15;
 const SIDE_ROOM: f32 = 0.1;
 /// People who cross at the same time are at least this far apart, metres.
 const APART: f32 = 0.9;
+/// Ticks of a way to and from a ribbon that are kept free of all others.
+const LEAD: i32 = 40;
+const TASTE: Taste = Taste { calm: 1.0, expansions: 60 };
 /// Ways across that are tried for each that is wanted.
-const TRIES: usize = 500;
+const TRIES: usize = 2000;
 
 /// Somebody who crosses an edge whose lower end is at the origin.
 pub(super) struct Crossing {
     /// The patches, in order of time.
     pub pieces: Vec<Piece>,
+    /// Some way to where it begins and from where it ends that nobody else who crosses an edge is in.
+    pub leads: [Vec<Piece>; 2],
     /// True if towards larger coordinates.
     pub forward: bool,
     across: Across,
@@ -50,20 +56,13 @@ pub(super) struct Crossing {
 }
 
 impl Crossing {
-    /// The port at which it begins.
-    pub fn entry(&self, library: &Library) -> Port {
-        library.entry_of(&self.pieces[0])
-    }
-
-    /// The port at which it ends.
-    pub fn exit(&self, library: &Library) -> Port {
-        library.exit_of(self.pieces.last().expect("a crossing has pieces"))
+    fn all(&self) -> impl Iterator<Item = &Piece> + Clone {
+        self.pieces.iter().chain(self.leads.iter().flatten())
     }
 
     fn meets(&self, other: &Self, by: Vec2, library: &Library) -> bool {
-        let moved: Vec<Piece> =
-            other.pieces.iter().map(|p| p.clone().shifted(Shift { place: by, ticks: 0 })).collect();
-        self.pieces.iter().any(|p| moved.iter().any(|q| are_near(p, q, library)))
+        let moved = other.all().map(|p| p.clone().shifted(Shift { place: by, ticks: 0 }));
+        moved.into_iter().any(|q| self.all().any(|p| are_near(p, &q, library)))
     }
 }
 
@@ -89,7 +88,7 @@ impl Ribbons {
     /// There is no room for them.
     pub fn new(
         library: &Library,
-        domain: &Domain,
+        one: &Scene,
         (side, colours, count): (f32, u32, usize),
         seed: u64,
     ) -> Result<Self> {
@@ -99,12 +98,12 @@ impl Ribbons {
             let problem = "expected a kind of one person who walks with empty hands, to cross edges of tiles; found none";
             return Err(Error::invalid("patch set", "kinds", problem));
         }
-        let ground = Tracks::on_open_ground(library, domain);
-        let drawing = Drawing { library, domain, ground, walks, side };
+        let grounds = Grounds::new(one, side)?;
+        let drawing = Drawing { library, grounds: &grounds, walks, side };
         for (colour, across) in (0..colours).flat_map(|c| [(c, Across::X), (c, Across::Z)]) {
             let mut rng = ChaCha8Rng::seed_from_u64(mix(mix(seed ^ u64::from(colour)) ^ across as u64));
             for k in 0..count {
-                let draw = |rng: &mut _| drawing.crossing(across, colour, k % 2 == 0, rng);
+                let draw = |rng: &mut ChaCha8Rng| drawing.crossing(across, colour, k % 2 == 0, rng);
                 let fits = |c: &Crossing| ribbons.have_room(c, side, library);
                 let found = (0..TRIES).find_map(|_| draw(&mut rng).filter(fits));
                 ribbons.all.push(found.ok_or_else(|| no_room(side, count))?);
@@ -148,11 +147,29 @@ fn walks<'l>(library: &'l Library) -> Vec<&'l Move> {
     library.forward.iter().flatten().filter(brisk).collect()
 }
 
+/// Open ground, and the tiles before and beyond an edge, by axis.
+struct Grounds {
+    open: Domain,
+    tiles: [[Domain; 2]; 2],
+}
+
+impl Grounds {
+    fn new(one: &Scene, side: f32) -> Result<Self> {
+        let domain = |low: Vec2, high: Vec2| {
+            Domain::new(&Scene { region: Polygon::rectangle(low * side, high * side), ..one.clone() })
+        };
+        let tile = |low: Vec2| domain(low, low + 1.0);
+        Ok(Self {
+            open: domain(Vec2::NEG_ONE, Vec2::splat(2.0))?,
+            tiles: [[tile(Vec2::NEG_X)?, tile(Vec2::ZERO)?], [tile(Vec2::NEG_Y)?, tile(Vec2::ZERO)?]],
+        })
+    }
+}
+
 /// What crossings are drawn from.
 struct Drawing<'a> {
     library: &'a Library<'a>,
-    domain: &'a Domain,
-    ground: Tracks<'a>,
+    grounds: &'a Grounds,
     walks: Vec<&'a Move>,
     side: f32,
 }
@@ -162,7 +179,7 @@ impl Drawing<'_> {
     fn crossing(&self, across: Across, colour: u32, forward: bool, rng: &mut ChaCha8Rng) -> Option<Crossing> {
         let roles = self.chain(rng);
         let length: i32 = roles.iter().map(|m| m.ticks).sum();
-        let begin = rng.random_range(SEEN - length..self.domain.horizon - SEEN);
+        let begin = rng.random_range(SEEN - length..self.grounds.open.horizon - SEEN);
         let along = rng.random_range(0.0..self.side);
         let aslant = rng.random_range(-ASLANT..ASLANT);
         let way = self.lay(&roles, Ground::IDENTITY, begin);
@@ -180,8 +197,33 @@ impl Drawing<'_> {
             Across::Z => Vec2::new(along, 0.0),
         };
         let from = Ground::new(on_border - Ground::new(Vec2::ZERO, heading).apply(middle), heading);
-        let crossing = Crossing { pieces: self.lay(&roles, from, begin), forward, across, colour };
-        (self.is_across(&crossing) && self.is_clean(&crossing)).then_some(crossing)
+        let mut crossing = Crossing { pieces: self.lay(&roles, from, begin), leads: Default::default(), forward, across, colour };
+        if !self.is_across(&crossing) || !self.is_clean(&crossing) {
+            return None;
+        }
+        crossing.leads = self.leads(&crossing, rng)?;
+        Some(crossing)
+    }
+
+    /// A way to where a crossing begins, and one from where it ends.
+    fn leads(&self, crossing: &Crossing, rng: &mut ChaCha8Rng) -> Option<[Vec<Piece>; 2]> {
+        let [lower, upper] = &self.grounds.tiles[crossing.across as usize];
+        let (before, beyond) = if crossing.forward { (lower, upper) } else { (upper, lower) };
+        let entry = self.library.entry_of(&crossing.pieces[0]);
+        let exit = self.library.exit_of(crossing.pieces.last()?);
+        let mut lead = |domain: &Domain, from: Port, goal: Goal| {
+            let ground = Tracks::on_open_ground(self.library, domain);
+            Bridge::default().search(ground.view(), from, goal, Company::NONE, TASTE, rng)
+        };
+        let horizon = self.grounds.open.horizon;
+        let mut leads: [Vec<Piece>; 2] = Default::default();
+        if entry.tick > 0 {
+            leads[0] = lead(before, entry, Goal::Since((entry.tick - LEAD).max(0)))?;
+        }
+        if exit.tick < horizon {
+            leads[1] = lead(beyond, exit, Goal::Until((exit.tick + LEAD).min(horizon)))?;
+        }
+        Some(leads)
     }
 
     /// Walks that follow each other.
@@ -201,7 +243,7 @@ impl Drawing<'_> {
     fn lay(&self, roles: &[&Move], mut from: Ground, mut begin: i32) -> Vec<Piece> {
         let mut pieces = Vec::new();
         for step in roles {
-            let piece = Piece::rigid(self.library, self.domain, step.role, NO_INSTANCE, from, begin);
+            let piece = Piece::rigid(self.library, &self.grounds.open, step.role, NO_INSTANCE, from, begin);
             (from, begin) = (piece.exit(), piece.end);
             pieces.push(piece);
         }
@@ -236,7 +278,8 @@ impl Drawing<'_> {
     /// True if it is walked as people can.
     fn is_clean(&self, crossing: &Crossing) -> bool {
         let mut desk = Desk::default();
-        let mut draft = Draft::new(&self.ground, &mut desk);
+        let ground = Tracks::on_open_ground(self.library, &self.grounds.open);
+        let mut draft = Draft::new(&ground, &mut desk);
         let ids = crossing.pieces.iter().map(|p| draft.add(p.clone())).collect();
         draft.push_track(ids);
         is_clean(&draft)

@@ -23,7 +23,7 @@ const SEEDS: u64 = 12;
 
 /// Where somebody crosses a tile's border: the side and which of its colour's ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Gap {
+pub(in crate::tiling) struct Gap {
     /// The side.
     pub side: usize,
     /// The number of the crossing.
@@ -33,10 +33,21 @@ pub(super) struct Gap {
 /// Somebody who is to come in or go out.
 pub(in crate::tiling) struct Crosser {
     ids: Vec<PieceId>,
+    /// A way on that is kept free for them until they are led.
+    kept: Vec<PieceId>,
     entry: Port,
     exit: Port,
     comes: bool,
+    /// Where.
+    pub gap: Gap,
+}
+
+/// A crossing seen from a tile.
+struct Visit {
     gap: Gap,
+    comes: bool,
+    pieces: Vec<Piece>,
+    lead: Vec<Piece>,
 }
 
 /// Somebody's life within a tile.
@@ -112,31 +123,43 @@ impl Workshop<'_> {
     /// # Errors
     /// Somebody who crosses its borders finds no way.
     pub fn build(&self, key: Key, secs: f64, progress: &mut dyn FnMut(&Progress) -> bool) -> Result<Tile> {
-        let crossings: Vec<(Gap, Vec<Piece>, bool)> = self.crossings(key).map(|(gap, c)| self.put(gap, c)).collect();
-        let domain = Domain::new(self.scene)?.crossed_by(crossings.iter().map(|c| places(&c.1)).collect());
+        let mut crossings: Vec<Visit> = self.crossings(key).map(|(gap, c)| self.visit(gap, c)).collect();
+        let domain = Domain::new(self.scene)?.crossed_by(crossings.iter().map(|c| places(&c.pieces)).collect());
         for again in 0..SEEDS {
             let mut tracks = Tracks::new(self.library, &domain);
-            let crossers: Vec<Crosser> = crossings.iter().map(|c| self.crosser(&mut tracks, c)).collect();
+            let crossers = self.crossers(&mut tracks, &crossings);
             let (seed, clock) = (key.seed(self.seed.wrapping_add(again)), Clock::new(secs, progress));
             let people = (crossers.as_slice(), self.residents(key));
-            if let Some((tracks, faults)) = fill(self.scene, self.passages, tracks, people, seed, clock) {
-                return Ok(finished(&tracks, &crossers, faults));
+            match fill(self.scene, self.passages, tracks, people, seed, clock) {
+                Ok((tracks, faults)) => return Ok(finished(&tracks, &crossers, faults)),
+                // Who found no way comes first next time.
+                Err(stuck) => crossings.sort_by_key(|c| !stuck.contains(&c.gap)),
             }
         }
         let problem = "expected ways for all who cross the borders of a tile, found none; make tiles larger or people fewer";
         Err(Error::invalid("scene", "wang", problem))
     }
 
-    /// A crossing as the tile sees it, and whether its person comes in.
-    fn put(&self, gap: Gap, crossing: &Crossing) -> (Gap, Vec<Piece>, bool) {
+    /// A crossing as the tile sees it.
+    fn visit(&self, gap: Gap, crossing: &Crossing) -> Visit {
         let shift = Shift { place: edge_of(gap.side, self.side), ticks: 0 };
-        let pieces = crossing.pieces.iter().map(|p| p.clone().shifted(shift)).collect();
-        (gap, pieces, crossing.forward != of_side(gap.side).1)
+        let put = |pieces: &[Piece]| pieces.iter().map(|p| p.clone().shifted(shift)).collect();
+        let comes = crossing.forward != of_side(gap.side).1;
+        Visit { gap, comes, pieces: put(&crossing.pieces), lead: put(&crossing.leads[usize::from(comes)]) }
     }
 
-    fn crosser(&self, tracks: &mut Tracks, (gap, pieces, comes): &(Gap, Vec<Piece>, bool)) -> Crosser {
-        let (entry, exit) = (self.library.entry_of(&pieces[0]), self.library.exit_of(&pieces[pieces.len() - 1]));
-        Crosser { ids: tracks.fix(pieces.iter().cloned()), entry, exit, comes: *comes, gap: *gap }
+    /// Puts those in who cross the borders.
+    fn crossers(&self, tracks: &mut Tracks, visits: &[Visit]) -> Vec<Crosser> {
+        let ids: Vec<Vec<PieceId>> = visits.iter().map(|v| tracks.fix(v.pieces.iter().cloned())).collect();
+        let crosser = |(visit, ids): (&Visit, Vec<PieceId>)| Crosser {
+            ids,
+            kept: visit.lead.iter().map(|p| tracks.put(p.clone())).collect(),
+            entry: self.library.entry_of(&visit.pieces[0]),
+            exit: self.library.exit_of(&visit.pieces[visit.pieces.len() - 1]),
+            comes: visit.comes,
+            gap: visit.gap,
+        };
+        visits.iter().zip(ids).map(crosser).collect()
     }
 }
 
@@ -156,6 +179,7 @@ pub(in crate::tiling) fn lead_across(
 ) -> Option<()> {
     let Crosser { entry, exit, comes, .. } = *crosser;
     let horizon = draft.base.domain.horizon;
+    crosser.kept.iter().for_each(|&id| draft.hide_piece(id));
     let way = match comes {
         true if exit.tick < horizon => draft.search(exit, Goal::Until(horizon), Company::NONE, taste, rng)?,
         false if entry.tick > 0 => draft.search(entry, Goal::Since(0), Company::NONE, taste, rng)?,
