@@ -167,7 +167,10 @@ impl Workshop<'_> {
 fn places(pieces: &[Piece]) -> domain::Crossing {
     let bodies = || pieces.iter().filter(|p| !p.bodies.is_empty());
     let from = bodies().next().map_or(0, |p| p.shown_from);
-    domain::Crossing { from, places: bodies().flat_map(|p| p.bodies.iter().map(|b| b.position)).collect() }
+    // A body is also seen at the tick at which it leaves the last piece.
+    let last = pieces.last().map(|p| p.exit().position);
+    let places = bodies().flat_map(|p| p.bodies.iter().map(|b| b.position)).chain(last).collect();
+    domain::Crossing { from, places }
 }
 
 /// Leads somebody who comes in to the end of time, or who goes out from its beginning.
