@@ -83,6 +83,11 @@ const GENTLE_ROUNDS: usize = 6;
 const MEND_EXPANSIONS: usize = 1500;
 /// How often patches of several people that mending cost are made up for.
 const REFILLS: usize = 4;
+/// A tile may be short of company, if others are not: the same for tiles, and the part of the company wished for that is
+/// enough for now if another seed can be tried instead.
+const TILE_PATIENCE: usize = 12;
+const TILE_REFILLS: usize = 1;
+const TILE_COMPANY: f32 = 0.85;
 /// Rounds of mending.
 const MEND_ROUNDS: usize = 30;
 /// Time between two reports of progress.
@@ -195,7 +200,7 @@ fn engine(
     engine.let_in();
     engine.hurdle();
     engine.populate();
-    let Rehearsal { played, faults, .. } = engine.finish();
+    let Rehearsal { played, faults, .. } = engine.finish(REFILLS);
     let Engine { mut crew, clock, .. } = engine;
     crew.tracks.occupancy.close();
     let status = match placed {
@@ -210,20 +215,25 @@ fn engine(
 /// are added as anywhere. The tiling and how many faults are left.
 ///
 /// # Errors
-/// Those who find no way.
+/// Those who find no way; nobody if few people meet, which another seed may do better, and who is picky minds.
 pub(super) fn fill<'a>(
     scene: &'a Scene,
     passages: &'a Passages<'a>,
     tracks: Tracks<'a>,
     (crossers, residents): (&[Crosser], usize),
-    seed: u64,
+    (seed, picky): (u64, bool),
     clock: Clock<'a>,
 ) -> std::result::Result<(Tracks<'a>, usize), Vec<Gap>> {
     let mut engine = Engine::new(scene, passages, tracks, seed, clock);
     engine.cross(crossers.iter().collect())?;
-    engine.most = crossers.len() + residents;
-    engine.populate();
-    let faults = engine.finish().faults.len();
+    (engine.most, engine.patience) = (crossers.len() + residents, TILE_PATIENCE);
+    engine.gather();
+    let enough = TILE_COMPANY * engine.company_wish() as f32;
+    if picky && (engine.crew.tracks.company() as f32) < enough && engine.goes_on(Phase::Seed) {
+        return Err(vec![]);
+    }
+    engine.add_the_others();
+    let faults = engine.finish(TILE_REFILLS).faults.len();
     Ok((engine.crew.tracks, faults))
 }
 
@@ -270,6 +280,8 @@ struct Engine<'a> {
     clock: Clock<'a>,
     /// Most people: those who are there anyway, those of the teams, and those who came in.
     most: usize,
+    /// Failed tries per person in a row after which no more patches of several people are wished for.
+    patience: usize,
 }
 
 impl<'a> Engine<'a> {
@@ -278,15 +290,20 @@ impl<'a> Engine<'a> {
         let crew = Crew::new(tracks, scene.region.area(), seed);
         let taste = Taste { calm: calm(scene), expansions: library.steps(horizon) * EXPANSIONS_PER_STEP };
         let plan = Plan::new(library, passages, horizon, seed);
-        Self { scene, crew, passages, plan, taste, clock, most: scene.characters }
+        Self { scene, crew, passages, plan, taste, clock, most: scene.characters, patience: ENRICH_PATIENCE }
     }
 
     /// Adds people who meet, then those who come alone, and patches of several people where company is short.
     fn populate(&mut self) {
         self.gather();
+        self.add_the_others();
+    }
+
+    /// Adds people who come alone, and patches of several people where company is short.
+    fn add_the_others(&mut self) {
         self.enrich(FIRST_PATIENCE);
         self.seed();
-        self.enrich(ENRICH_PATIENCE);
+        self.enrich(self.patience);
     }
 
     /// Leads all who cross a tile's borders to and from where they do; an error are those who find no way.
@@ -454,16 +471,16 @@ impl<'a> Engine<'a> {
     }
 
     /// Mends, and where that cost more patches of several people than it may, puts new ones in and mends again.
-    fn finish(&mut self) -> Rehearsal {
+    fn finish(&mut self, refills: usize) -> Rehearsal {
         let mut rehearsal = Rehearsal::new(&self.crew.tracks);
         self.mend(&mut rehearsal);
-        for _ in 0..REFILLS {
+        for _ in 0..refills {
             let share = self.crew.tracks.multi_person_share();
             if share >= self.scene.interaction || !rehearsal.faults.is_empty() {
                 break;
             }
             // People may have been led other ways even if no patch found room.
-            self.enrich(ENRICH_PATIENCE);
+            self.enrich(self.patience);
             rehearsal.repeat(&self.crew.tracks);
             self.mend(&mut rehearsal);
             if self.crew.tracks.multi_person_share() <= share {

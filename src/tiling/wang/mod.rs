@@ -13,6 +13,7 @@ mod tile;
 use std::collections::BTreeMap;
 
 use glam::Vec2;
+use rayon::prelude::*;
 
 use self::lay::Layout;
 use self::plane::{Key, Plane};
@@ -22,7 +23,7 @@ use super::bake::bake;
 use super::domain::Domain;
 use super::engine::{Clock, mend_laid, wishes};
 use super::library::Library;
-use super::outcome::{Options, Outcome, Progress, Status};
+use super::outcome::{Options, Outcome, Phase, Progress, Status};
 use super::passage::Passages;
 use super::prefer::{Field, Form};
 use super::rehearsal::Rehearsal;
@@ -44,7 +45,7 @@ const WHOLE: f32 = 1e-3;
 /// Most tiles of a region.
 const MOST_TILES: f32 = 10_000.0;
 /// People who cross an edge, per person on a tile.
-const CROSSING: f32 = 0.2;
+const CROSSING: f32 = 0.15;
 /// Tiles are built while this share of the time is not over.
 const BUILDING: f64 = 0.8;
 
@@ -179,18 +180,32 @@ fn build(
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<BTreeMap<Key, Tile>> {
     let start = std::time::Instant::now();
-    let mut tiles = BTreeMap::new();
-    for key in plane.places().map(|at| plane.key(at)) {
-        if tiles.contains_key(&key) {
-            continue;
-        }
-        let since = start.elapsed().as_secs_f64();
-        let mut told = |p: &Progress| progress(&Progress { secs: since + p.secs, ..*p });
-        let t0 = start.elapsed().as_secs_f64();
-        tiles.insert(key, shop.build(key, options.time_secs * BUILDING - since, &mut told)?);
-        if std::env::var_os("WANG_DEBUG").is_some() { eprintln!("{key:?} {:.2}", start.elapsed().as_secs_f64() - t0); }
+    let mut keys: Vec<Key> = plane.places().map(|at| plane.key(at)).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    let (mut tiles, mut goes_on): (BTreeMap<Key, Tile>, bool) = (BTreeMap::new(), true);
+    for some in keys.chunks(2 * rayon::current_num_threads()) {
+        let left = options.time_secs * BUILDING - start.elapsed().as_secs_f64();
+        let secs = if goes_on { left.max(0.0) } else { 0.0 };
+        let built = some.par_iter().with_max_len(1).map(|&key| Ok((key, shop.build(key, secs)?)));
+        tiles.extend(built.collect::<Result<Vec<_>>>()?);
+        goes_on = goes_on && progress(&state(&tiles, start.elapsed().as_secs_f64()));
     }
     Ok(tiles)
+}
+
+/// How far building has got.
+fn state(tiles: &BTreeMap<Key, Tile>, secs: f64) -> Progress {
+    let stays = || tiles.values().flat_map(|t| &t.stays);
+    Progress {
+        phase: Phase::Seed,
+        patches: tiles.values().map(|t| t.instances as usize).sum(),
+        characters: stays().filter(|s| s.from.is_none()).count(),
+        danglings: 0,
+        multi_person_share: 0.0,
+        energy: 0.0,
+        secs,
+    }
 }
 
 /// The tiling and its final bodies; where a border still has a fault, it is mended as any other.

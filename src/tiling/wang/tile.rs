@@ -19,7 +19,9 @@ use crate::tiling::{Progress, Scene};
 use crate::{Error, Result};
 
 /// Seeds tried until everybody who crosses the borders finds a way.
-const SEEDS: u64 = 12;
+const SEEDS: u64 = 16;
+/// So many of them are tried for one whose people meet often.
+const PICKY: u64 = 8;
 
 /// Where somebody crosses a tile's border: the side and which of its colour's ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -122,13 +124,14 @@ impl Workshop<'_> {
     ///
     /// # Errors
     /// Somebody who crosses its borders finds no way.
-    pub fn build(&self, key: Key, secs: f64, progress: &mut dyn FnMut(&Progress) -> bool) -> Result<Tile> {
+    pub fn build(&self, key: Key, secs: f64) -> Result<Tile> {
         let mut crossings: Vec<Visit> = self.crossings(key).map(|(gap, c)| self.visit(gap, c)).collect();
         let domain = Domain::new(self.scene)?.crossed_by(crossings.iter().map(|c| places(&c.pieces)).collect());
         for again in 0..SEEDS {
             let mut tracks = Tracks::new(self.library, &domain);
+            let mut go_on = |_: &Progress| true;
             let crossers = self.crossers(&mut tracks, &crossings);
-            let (seed, clock) = (key.seed(self.seed.wrapping_add(again)), Clock::new(secs, progress));
+            let (seed, clock) = ((key.seed(self.seed.wrapping_add(again)), again < PICKY), Clock::new(secs, &mut go_on));
             let people = (crossers.as_slice(), self.residents(key));
             match fill(self.scene, self.passages, tracks, people, seed, clock) {
                 Ok((tracks, faults)) => return Ok(finished(&tracks, &crossers, faults)),
