@@ -61,7 +61,6 @@ pub(super) struct Crossing {
 /// Final hips are no farther from where the path of a rigid piece has them, metres.
 const HIPS_ASTRAY: f32 = 0.3;
 
-
 impl Domain {
     /// # Errors
     /// The obstacles leave nowhere to stand.

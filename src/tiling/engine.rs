@@ -211,8 +211,8 @@ fn engine(
     Outcome { crowd, status, danglings: 0, interpenetrations: faults.len(), solve_secs: clock.secs() }
 }
 
-/// Fills a tile of a plane: those who cross its borders are led there and from there, stopped or not, then `residents`
-/// are added as anywhere. The tiling and how many faults are left.
+/// Fills a tile of a plane: some of `residents` meet while it is empty, then those who cross its borders are led there and
+/// from there, stopped or not, then the others are added as anywhere. The tiling and how many faults are left.
 ///
 /// # Errors
 /// Those who find no way; nobody if few people meet, which another seed may do better, and who is picky minds.
@@ -225,13 +225,15 @@ pub(super) fn fill<'a>(
     clock: Clock<'a>,
 ) -> std::result::Result<(Tracks<'a>, usize), Vec<Gap>> {
     let mut engine = Engine::new(scene, passages, tracks, seed, clock);
-    engine.cross(crossers.iter().collect())?;
-    (engine.most, engine.patience) = (crossers.len() + residents, TILE_PATIENCE);
+    // Half the life of who crosses a border is here, or some more.
+    (engine.most, engine.visitors, engine.patience) = (residents, crossers.len() * 5 / 8, TILE_PATIENCE);
     engine.gather();
     let enough = TILE_COMPANY * engine.company_wish() as f32;
     if picky && (engine.crew.tracks.company() as f32) < enough && engine.goes_on(Phase::Seed) {
         return Err(vec![]);
     }
+    engine.cross(crossers.iter().collect())?;
+    (engine.most, engine.visitors) = (crossers.len() + residents, 0);
     engine.add_the_others();
     let faults = engine.finish(TILE_REFILLS).faults.len();
     Ok((engine.crew.tracks, faults))
@@ -280,6 +282,8 @@ struct Engine<'a> {
     clock: Clock<'a>,
     /// Most people: those who are there anyway, those of the teams, and those who came in.
     most: usize,
+    /// Whole lives of others who are still to come.
+    visitors: usize,
     /// Failed tries per person in a row after which no more patches of several people are wished for.
     patience: usize,
 }
@@ -290,7 +294,17 @@ impl<'a> Engine<'a> {
         let crew = Crew::new(tracks, scene.region.area(), seed);
         let taste = Taste { calm: calm(scene), expansions: library.steps(horizon) * EXPANSIONS_PER_STEP };
         let plan = Plan::new(library, passages, horizon, seed);
-        Self { scene, crew, passages, plan, taste, clock, most: scene.characters, patience: ENRICH_PATIENCE }
+        Self {
+            scene,
+            crew,
+            passages,
+            plan,
+            taste,
+            clock,
+            most: scene.characters,
+            visitors: 0,
+            patience: ENRICH_PATIENCE,
+        }
     }
 
     /// Adds people who meet, then those who come alone, and patches of several people where company is short.
@@ -310,8 +324,7 @@ impl<'a> Engine<'a> {
     fn cross(&mut self, mut left: Vec<&Crosser>) -> std::result::Result<(), Vec<Gap>> {
         let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
         for _ in 0..CROSS_ROUNDS {
-            let made =
-                self.crew.work(left.len(), |i, draft, rng| lead_across(draft, left[i], taste, rng), |_, _| true);
+            let made = self.crew.work(left.len(), |i, draft, rng| lead_across(draft, left[i], taste, rng), |_, _| true);
             left = left.into_iter().zip(made).filter(|(_, made)| !made).map(|(crosser, _)| crosser).collect();
         }
         let stuck: Vec<Gap> = left.into_iter().map(|crosser| crosser.gap).collect();
@@ -325,7 +338,8 @@ impl<'a> Engine<'a> {
 
     /// Ticks in patches of several people that are aimed at when everybody is there.
     fn company_wish(&self) -> usize {
-        let ticks = self.crew.tracks.presence() + self.people_left() * self.crew.tracks.domain.horizon as usize;
+        let ticks = self.crew.tracks.presence()
+            + (self.people_left() + self.visitors) * self.crew.tracks.domain.horizon as usize;
         (self.scene.interaction * ABOVE_WISH * ticks as f32) as usize
     }
 

@@ -5,8 +5,8 @@ use glam::Vec2;
 use super::parts::{KindFilter, Periodic, Placed, Sink, Source, Team, Wang};
 use super::read::Section;
 use super::{MAX_CHARACTERS, MAX_SECS};
-use crate::tiling::wang::{LARGEST_TILE, SMALLEST_TILE};
 use crate::geom::{Gate, Ground, Obstacle, Polygon, Waypoint};
+use crate::tiling::wang::{LARGEST_TILE, SMALLEST_TILE};
 
 /// Most colours of edges and variants of tiles, and how many there are unless a scene says it.
 const MAX_COLOURS: usize = 8;

@@ -132,7 +132,9 @@ pub(super) fn tile(
     let plane = Plane::new(scene, wang, options.seed);
     let one = one_tile(scene, wang);
     let ribbons = ribbons(&library, &one, wang, options.seed)?;
-    if std::env::var_os("WANG_DEBUG").is_some() { eprintln!("ribbons {:.2}", start.elapsed().as_secs_f64()); }
+    if std::env::var_os("WANG_DEBUG").is_some() {
+        eprintln!("ribbons {:.2}", start.elapsed().as_secs_f64());
+    }
     let shop = Workshop {
         scene: &one,
         library: &library,
@@ -142,7 +144,14 @@ pub(super) fn tile(
         seed: options.seed,
     };
     let tiles = build(&shop, plane, options, progress)?;
-    if std::env::var_os("WANG_DEBUG").is_some() { eprintln!("tiles {} {:.2} faults {:?}", tiles.len(), start.elapsed().as_secs_f64(), tiles.values().map(|t| t.faults).collect::<Vec<_>>()); }
+    if std::env::var_os("WANG_DEBUG").is_some() {
+        eprintln!(
+            "tiles {} {:.2} faults {:?}",
+            tiles.len(),
+            start.elapsed().as_secs_f64(),
+            tiles.values().map(|t| t.faults).collect::<Vec<_>>()
+        );
+    }
     let domain = Domain::new(scene)?;
     let people = Layout { plane, tiles: &tiles, ribbons: &ribbons, side: wang.tile }.people();
     let tracks = Tracks::laid(&library, &domain, people);
@@ -222,7 +231,9 @@ fn mended<'a>(
             eprintln!("fault {f:?} at {:?}", tracks.state_at(f.a, f.tick).position);
         }
     }
-    if std::env::var_os("WANG_DEBUG").is_some() { eprintln!("rehearsed at {:.2}", clock.secs()); }
+    if std::env::var_os("WANG_DEBUG").is_some() {
+        eprintln!("rehearsed at {:.2}", clock.secs());
+    }
     if rehearsal.faults.is_empty() {
         return (tracks, rehearsal);
     }

@@ -86,16 +86,12 @@ impl Ribbons {
     ///
     /// # Errors
     /// There is no room for them.
-    pub fn new(
-        library: &Library,
-        one: &Scene,
-        (side, colours, count): (f32, u32, usize),
-        seed: u64,
-    ) -> Result<Self> {
+    pub fn new(library: &Library, one: &Scene, (side, colours, count): (f32, u32, usize), seed: u64) -> Result<Self> {
         let mut ribbons = Self { all: vec![] };
         let walks = walks(library);
         if walks.is_empty() {
-            let problem = "expected a kind of one person who walks with empty hands, to cross edges of tiles; found none";
+            let problem =
+                "expected a kind of one person who walks with empty hands, to cross edges of tiles; found none";
             return Err(Error::invalid("patch set", "kinds", problem));
         }
         let grounds = Grounds::new(one, side)?;
@@ -197,7 +193,8 @@ impl Drawing<'_> {
             Across::Z => Vec2::new(along, 0.0),
         };
         let from = Ground::new(on_border - Ground::new(Vec2::ZERO, heading).apply(middle), heading);
-        let mut crossing = Crossing { pieces: self.lay(&roles, from, begin), leads: Default::default(), forward, across, colour };
+        let mut crossing =
+            Crossing { pieces: self.lay(&roles, from, begin), leads: Default::default(), forward, across, colour };
         if !self.is_across(&crossing) || !self.is_clean(&crossing) {
             return None;
         }

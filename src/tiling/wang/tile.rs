@@ -131,7 +131,8 @@ impl Workshop<'_> {
             let mut tracks = Tracks::new(self.library, &domain);
             let mut go_on = |_: &Progress| true;
             let crossers = self.crossers(&mut tracks, &crossings);
-            let (seed, clock) = ((key.seed(self.seed.wrapping_add(again)), again < PICKY), Clock::new(secs, &mut go_on));
+            let (seed, clock) =
+                ((key.seed(self.seed.wrapping_add(again)), again < PICKY), Clock::new(secs, &mut go_on));
             let people = (crossers.as_slice(), self.residents(key));
             match fill(self.scene, self.passages, tracks, people, seed, clock) {
                 Ok((tracks, faults)) => return Ok(finished(&tracks, &crossers, faults)),
@@ -139,7 +140,8 @@ impl Workshop<'_> {
                 Err(stuck) => crossings.sort_by_key(|c| !stuck.contains(&c.gap)),
             }
         }
-        let problem = "expected ways for all who cross the borders of a tile, found none; make tiles larger or people fewer";
+        let problem =
+            "expected ways for all who cross the borders of a tile, found none; make tiles larger or people fewer";
         Err(Error::invalid("scene", "wang", problem))
     }
 
