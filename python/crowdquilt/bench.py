@@ -16,7 +16,7 @@ from rich.table import Table
 
 from crowdquilt import motion, patch, refine, samples
 from crowdquilt._core import PatchSet, Scene, measure_patches, measure_poses, measure_replay, measure_street, tile
-from crowdquilt.bench_tiling import EXAMPLES, PAPER, STATIC, example, growth, repeating, static
+from crowdquilt.bench_tiling import EXAMPLES, PAPER, STATIC, example, growth, planes, repeating, static
 
 Say = Callable[[str], None]
 
@@ -50,6 +50,7 @@ def tiling(seeds: int, say: Say, patches: PatchSet | None = None) -> list[Row]:
         figures += [figure for scene in STATIC for figure in static(scene, patches, seeds, say)]
         figures += [figure for scene in EXAMPLES for figure in example(scene, patches, seeds, say)]
         figures += repeating(patches, seeds, say)
+        figures += planes(patches, say)
         figures += growth(patches, say)
     else:
         figures += [figure for scene in STATIC for figure in static(scene, patches, seeds, say, published=True)]

@@ -253,3 +253,29 @@ def repeating(patches: PatchSet, seeds: int, say: Say) -> list[Figure]:
         secs, good = median(run.outcome.solve_secs for run in made), sum(run.ok for run in made)
         say(f"tiling: repeating {name}: {secs:.2f} s, {good} of {seeds} perfect and checked")
     return figures
+
+
+PLANES = (3, 6, 10)
+"""Sides of planes of tiles of 10 x 10 m, in tiles."""
+
+
+def planes(patches: PatchSet, say: Say, characters: int = 40) -> list[Figure]:
+    """Wang tiles: what a plane costs as it grows; no tile is worked out twice, all others cost only their bodies."""
+    figures = []
+    for tiles in PLANES:
+        side = 10 * tiles
+        text = (
+            f"region = [[0, 0], [{side}, 0], [{side}, {side}], [0, {side}]]\nduration_secs = 20\n"
+            f"characters = {characters * tiles**2}\ninteraction = 0.3\n[wang]\ntile = 10\n"
+        )
+        outcome = tile(Scene.from_toml(text), patches, seed=1, time=3600.0)
+        ok = outcome.status == "perfect" and check.check(outcome.crowd).ok
+        name = f"{side} x {side} m"
+        figures += [
+            Figure("wang", f"{name}: characters", len(outcome.crowd)),
+            Figure("wang", f"{name}: solve time", outcome.solve_secs, "s"),
+            Figure("wang", f"{name}: per tile", outcome.solve_secs / tiles**2, "s"),
+            Figure("wang", f"{name}: perfect and checked", float(ok)),
+        ]
+        say(f"tiling: wang {name}: {outcome.solve_secs:.1f} s, {'perfect and checked' if ok else outcome.reason}")
+    return figures

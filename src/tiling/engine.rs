@@ -244,10 +244,10 @@ pub(super) fn mend_laid<'a>(
     scene: &'a Scene,
     passages: &'a Passages<'a>,
     tracks: Tracks<'a>,
+    mut rehearsal: Rehearsal,
     seed: u64,
     clock: Clock<'a>,
 ) -> (Tracks<'a>, Rehearsal) {
-    let mut rehearsal = Rehearsal::new(&tracks);
     let mut engine = Engine::new(scene, passages, tracks, seed, clock);
     engine.mend(&mut rehearsal);
     (engine.crew.tracks, rehearsal)

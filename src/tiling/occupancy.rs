@@ -105,10 +105,13 @@ impl Occupancy {
         self.pieces.len() as PieceId - 1
     }
 
-    /// The same pieces with a grid; `None` if they are too crowded for one.
-    pub fn opened(self, domain: &Domain, library: &Library) -> Option<Self> {
+    /// The same pieces with a grid; without one as they were if they are too crowded for it.
+    pub fn opened(self, domain: &Domain, library: &Library) -> Result<Self, Self> {
         let mut open = Self { pieces: self.pieces, free: self.free, ..Self::new(domain, library) };
-        (0..open.pieces.len()).all(|id| open.show_if_room(id as PieceId)).then_some(open)
+        match (0..open.pieces.len()).all(|id| open.show_if_room(id as PieceId)) {
+            true => Ok(open),
+            false => Err(Self { cells: vec![], ..open }),
+        }
     }
 
     fn show_if_room(&mut self, id: PieceId) -> bool {

@@ -148,9 +148,13 @@ impl<'a> Tracks<'a> {
         tracks
     }
 
-    /// The same people seen by searches; `None` if they are too crowded for that.
-    pub fn opened(self) -> Option<Self> {
-        Some(Self { occupancy: self.occupancy.opened(self.domain, self.library)?, ..self })
+    /// The same people seen by searches; as they were if they are too crowded for that.
+    pub fn opened(self) -> Result<Self, Box<Self>> {
+        let (domain, library) = (self.domain, self.library);
+        match self.occupancy.opened(domain, library) {
+            Ok(occupancy) => Ok(Self { occupancy, ..self }),
+            Err(occupancy) => Err(Box::new(Self { occupancy, ..self })),
+        }
     }
 
     /// The port at which piece `index` of `track` begins; past the last piece, the port at which the track ends.

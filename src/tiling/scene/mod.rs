@@ -217,6 +217,8 @@ fn teams_agree(file: &Section, scene: &Scene) {
 /// The region is made of whole tiles, and nothing is asked for that tiles cannot have.
 fn tiles_fit(file: &Section, scene: &Scene) {
     for (key, problem) in super::wang::problems(scene) {
+        // Walls are a list of their own.
+        let key = if key == "obstacle" && !file.has(key) { "obstacles" } else { key };
         file.bad(&file.span_of(key), key, &problem);
     }
 }

@@ -132,9 +132,6 @@ pub(super) fn tile(
     let plane = Plane::new(scene, wang, options.seed);
     let one = one_tile(scene, wang);
     let ribbons = ribbons(&library, &one, wang, options.seed)?;
-    if std::env::var_os("WANG_DEBUG").is_some() {
-        eprintln!("ribbons {:.2}", start.elapsed().as_secs_f64());
-    }
     let shop = Workshop {
         scene: &one,
         library: &library,
@@ -144,14 +141,6 @@ pub(super) fn tile(
         seed: options.seed,
     };
     let tiles = build(&shop, plane, options, progress)?;
-    if std::env::var_os("WANG_DEBUG").is_some() {
-        eprintln!(
-            "tiles {} {:.2} faults {:?}",
-            tiles.len(),
-            start.elapsed().as_secs_f64(),
-            tiles.values().map(|t| t.faults).collect::<Vec<_>>()
-        );
-    }
     let domain = Domain::new(scene)?;
     let people = Layout { plane, tiles: &tiles, ribbons: &ribbons, side: wang.tile }.people();
     let tracks = Tracks::laid(&library, &domain, people);
@@ -175,9 +164,9 @@ fn one_tile(scene: &Scene, wang: Wang) -> Scene {
     Scene { region, characters, wang: None, ..scene.clone() }
 }
 
-/// Who crosses edges: an even number, so that as many go as come.
+/// Who crosses edges: an even number, so that as many go as come; nobody where there are hardly any people.
 fn ribbons(library: &Library, one: &Scene, wang: Wang, seed: u64) -> Result<Ribbons> {
-    let count = 2 * ((one.characters as f32 * CROSSING / 2.0).round() as usize).max(1);
+    let count = 2 * ((one.characters as f32 * CROSSING / 2.0).round() as usize).max(usize::from(one.characters >= 4));
     Ribbons::new(library, one, (wang.tile, wang.colours, count), seed)
 }
 
@@ -226,19 +215,14 @@ fn mended<'a>(
     clock: Clock<'a>,
 ) -> (Tracks<'a>, Rehearsal) {
     let rehearsal = Rehearsal::new(&tracks);
-    if std::env::var_os("WANG_DEBUG").is_some() {
-        for f in &rehearsal.faults {
-            eprintln!("fault {f:?} at {:?}", tracks.state_at(f.a, f.tick).position);
-        }
-    }
-    if std::env::var_os("WANG_DEBUG").is_some() {
-        eprintln!("rehearsed at {:.2}", clock.secs());
-    }
     if rehearsal.faults.is_empty() {
         return (tracks, rehearsal);
     }
     match tracks.opened() {
-        Some(tracks) => mend_laid(scene, passages, tracks, seed, clock),
-        None => unreachable!(),
+        Ok(tracks) => mend_laid(scene, passages, tracks, rehearsal, seed, clock),
+        Err(tracks) => (*tracks, rehearsal),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -142,8 +142,8 @@ mod tests {
     fn a_place_has_the_same_tile_whatever_lies_around_it() {
         let (small, large) =
             (plane(Vec2::ZERO, Vec2::splat(60.0), 9), plane(Vec2::splat(-100.0), Vec2::splat(90.0), 9));
-        let inner = small.places().filter(|at| at.iter().all(|&n| n > 0 && n < 5));
-        assert!(inner.clone().count() == 16 && inner.into_iter().all(|at| small.key(at) == large.key(at)));
+        let inner: Vec<[i64; 2]> = small.places().filter(|at| at.iter().all(|&n| n > 0 && n < 5)).collect();
+        assert!(inner.len() == 16 && inner.into_iter().all(|at| small.key(at) == large.key(at)));
     }
 
     #[test]

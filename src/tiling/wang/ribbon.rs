@@ -175,7 +175,11 @@ impl Drawing<'_> {
     fn crossing(&self, across: Across, colour: u32, forward: bool, rng: &mut ChaCha8Rng) -> Option<Crossing> {
         let roles = self.chain(rng);
         let length: i32 = roles.iter().map(|m| m.ticks).sum();
-        let begin = rng.random_range(SEEN - length..self.grounds.open.horizon - SEEN);
+        let horizon = self.grounds.open.horizon;
+        if length < LONG.min(SEEN + horizon) {
+            return None;
+        }
+        let begin = rng.random_range(SEEN - length..(horizon - SEEN).max(SEEN - length + 1));
         let along = rng.random_range(0.0..self.side);
         let aslant = rng.random_range(-ASLANT..ASLANT);
         let way = self.lay(&roles, Ground::IDENTITY, begin);
