@@ -212,7 +212,7 @@ fn engine(
 }
 
 /// Fills a tile of a plane: some of `residents` meet while it is empty, then those who cross its borders are led there and
-/// from there, stopped or not, then the others are added as anywhere. The tiling and how many faults are left.
+/// from there, stopped or not, then the others are added as anywhere.
 ///
 /// # Errors
 /// Those who find no way; nobody if few people meet, which another seed may do better, and who is picky minds.
@@ -223,7 +223,7 @@ pub(super) fn fill<'a>(
     (crossers, residents): (&[Crosser], usize),
     (seed, picky): (u64, bool),
     clock: Clock<'a>,
-) -> std::result::Result<(Tracks<'a>, usize), Vec<Gap>> {
+) -> std::result::Result<Tracks<'a>, Vec<Gap>> {
     let mut engine = Engine::new(scene, passages, tracks, seed, clock);
     // Half the life of who crosses a border is here, or some more.
     (engine.most, engine.visitors, engine.patience) = (residents, crossers.len() * 5 / 8, TILE_PATIENCE);
@@ -235,8 +235,8 @@ pub(super) fn fill<'a>(
     engine.cross(crossers.iter().collect())?;
     (engine.most, engine.visitors) = (crossers.len() + residents, 0);
     engine.add_the_others();
-    let faults = engine.finish(TILE_REFILLS).faults.len();
-    Ok((engine.crew.tracks, faults))
+    engine.finish(TILE_REFILLS);
+    Ok(engine.crew.tracks)
 }
 
 /// Mends a tiling that was put together, if it has faults.

@@ -68,8 +68,6 @@ pub(super) struct Tile {
     pub stays: Vec<Stay>,
     /// Instances have smaller numbers than this.
     pub instances: u32,
-    /// Faults of the final bodies that are left.
-    pub faults: usize,
 }
 
 /// What all tiles of a plane have in common.
@@ -135,7 +133,7 @@ impl Workshop<'_> {
                 ((key.seed(self.seed.wrapping_add(again)), again < PICKY), Clock::new(secs, &mut go_on));
             let people = (crossers.as_slice(), self.residents(key));
             match fill(self.scene, self.passages, tracks, people, seed, clock) {
-                Ok((tracks, faults)) => return Ok(finished(&tracks, &crossers, faults)),
+                Ok(tracks) => return Ok(finished(&tracks, &crossers)),
                 // Who found no way comes first next time.
                 Err(stuck) => crossings.sort_by_key(|c| !stuck.contains(&c.gap)),
             }
@@ -199,7 +197,7 @@ pub(in crate::tiling) fn lead_across(
 }
 
 /// The people of a tile without what they share with others.
-fn finished(tracks: &Tracks, crossers: &[Crosser], faults: usize) -> Tile {
+fn finished(tracks: &Tracks, crossers: &[Crosser]) -> Tile {
     let gap = |id: Option<&PieceId>, comes: bool| {
         let of = |c: &&Crosser| c.comes == comes && id.is_some_and(|id| c.ids.contains(id));
         crossers.iter().find(of).map(|c| c.gap)
@@ -211,5 +209,5 @@ fn finished(tracks: &Tracks, crossers: &[Crosser], faults: usize) -> Tile {
     };
     let stays: Vec<Stay> = tracks.tracks.iter().map(stay).collect();
     let instances = stays.iter().flat_map(|s| &s.pieces).map(|p| p.instance + 1).max().unwrap_or(0);
-    Tile { stays, instances, faults }
+    Tile { stays, instances }
 }
