@@ -4,26 +4,30 @@
 //!
 //! Versions: 1 had no `props`; 2 has them per kind: boxes with name, size, grip (where the middle is, seen from the
 //! middle between the palms: up, ahead), holds (role, begin, end: frames of the patch's clock), sat (who sits on it,
-//! likewise; absent if nobody) and where they rest before and after (middle, heading). Both are read, 2 is written.
+//! likewise; absent if nobody) and where they rest before and after (middle, heading). 3 may have a `study` (see
+//! [`super::study`]). All are read, 3 is written.
 
 use std::path::Path;
 
 use glam::{Quat, Vec2};
 
+use super::study::{Study, StudyHeader};
 use super::{Contact, Fragment, PatchKind, PatchProp, PatchSet, PoseGroup};
 use crate::container::{Reader, Writer, write_whole};
 use crate::motion::{FPS, JOINT_COUNT, Motion, MotionPath, Plant, Skeleton, canonical};
 use crate::{Error, Result};
 
 const MAGIC: &[u8; 8] = b"CQPATCH\0";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 #[derive(serde::Serialize, serde::Deserialize)]
-struct Header {
+pub(crate) struct Header {
     fps: f32,
     skeleton: Skeleton,
     groups: Vec<PoseGroup>,
     kinds: Vec<KindHeader>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    study: Option<StudyHeader>,
 }
 
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -75,12 +79,14 @@ impl PatchSet {
     /// The set as the bytes of a patch-set file.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut writer = Writer::default();
-        let header = self.write_into(&mut writer, "");
+        let mut header = self.write_into(&mut writer, "");
+        header.study = self.study.as_ref().map(|study| study.write_into(&mut writer));
         writer.finish(MAGIC, VERSION, &header)
     }
 
-    /// Adds the set's arrays to `writer`, their names prefixed; returns the header. The crowd file embeds sets so.
-    pub(crate) fn write_into(&self, writer: &mut Writer, prefix: &str) -> impl serde::Serialize + use<> {
+    /// Adds the set's arrays to `writer`, their names prefixed; returns the header. The crowd file embeds sets so,
+    /// without their studies.
+    pub(crate) fn write_into(&self, writer: &mut Writer, prefix: &str) -> Header {
         let motions: Vec<&Motion> = self.kinds.iter().flat_map(|k| &k.fragments).map(|f| &f.motion).collect();
         let flat = |of: fn(&Motion) -> &[f32]| motions.iter().flat_map(|m| of(m)).copied().collect::<Vec<f32>>();
         let points: Vec<f32> = motions.iter().flat_map(|m| &m.path.points).flat_map(|p| [p.x, p.y]).collect();
@@ -94,6 +100,7 @@ impl PatchSet {
             skeleton: canonical().clone(),
             groups: self.groups.clone(),
             kinds: self.kinds.iter().map(kind_header).collect(),
+            study: None,
         }
     }
 
@@ -135,7 +142,8 @@ impl PatchSet {
                 mirrored: kind.mirrored,
             });
         }
-        let set = Self { groups: header.groups, kinds };
+        let study = header.study.map(|study| Study::read_from(reader, study)).transpose()?;
+        let set = Self { groups: header.groups, kinds, study };
         match set.validate().into_iter().next() {
             Some(problem) => Err(problem),
             None => Ok(set),
@@ -200,6 +208,11 @@ impl PatchSet {
         }
         let of_kind = |(name, problem)| Error::invalid("patch set", format!("kind {name}"), problem);
         problems.extend(self.prop_problems().into_iter().map(of_kind));
+        if let Some((place, problem)) =
+            self.study.as_ref().filter(|_| problems.is_empty()).and_then(|s| s.problem(self))
+        {
+            problems.push(Error::invalid("patch set", place, problem));
+        }
         problems
     }
 }

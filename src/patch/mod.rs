@@ -16,6 +16,7 @@ mod mirror;
 mod prop;
 mod set;
 mod speed;
+pub mod study;
 
 pub(crate) use file::{filed_rotation, pack_rotation, unpack_rotation};
 pub(crate) use speed::{fastest_turns, turn_between};

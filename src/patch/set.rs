@@ -1,6 +1,7 @@
 //! The patch set: the patch kinds to tile with.
 
 use super::PatchProp;
+use super::study::Study;
 use crate::motion::{BodyPart, Motion};
 
 /// A group of full-body poses close enough to pass from one to another smoothly (paper section 4.2).
@@ -78,4 +79,18 @@ pub struct PatchSet {
     pub groups: Vec<PoseGroup>,
     /// The kinds.
     pub kinds: Vec<PatchKind>,
+    /// What was found out about them beforehand, if anything; to be left out or found anew when kinds change.
+    pub study: Option<Study>,
+}
+
+impl PatchSet {
+    /// The set with only some of its kinds.
+    pub fn only(&self, used: impl Fn(&PatchKind) -> bool) -> Self {
+        let mut left = 0..;
+        let index: Vec<Option<u32>> =
+            self.kinds.iter().map(|kind| used(kind).then(|| left.next().expect("endless"))).collect();
+        let kinds = self.kinds.iter().zip(&index).filter(|(_, there)| there.is_some()).map(|(kind, _)| kind.clone());
+        let study = self.study.as_ref().map(|study| study.of_some(&index));
+        Self { groups: self.groups.clone(), kinds: kinds.collect(), study }
+    }
 }

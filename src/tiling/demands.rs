@@ -33,12 +33,12 @@ pub(super) fn admitted<'a>(scene: &Scene, set: &'a PatchSet, method: Method) -> 
     if set.kinds.iter().all(used) {
         return Ok(Cow::Borrowed(set));
     }
-    let kinds: Vec<_> = set.kinds.iter().filter(|k| used(k)).cloned().collect();
-    if kinds.is_empty() {
+    let some = set.only(used);
+    if some.kinds.is_empty() {
         let problem = format!("expected to leave some of {} kinds over, found none left", set.kinds.len());
         return Err(Error::invalid("scene", "kinds", problem));
     }
-    Ok(Cow::Owned(PatchSet { groups: set.groups.clone(), kinds }))
+    Ok(Cow::Owned(some))
 }
 
 fn has(kind: &PatchKind, label: &str) -> bool {

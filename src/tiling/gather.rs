@@ -12,7 +12,7 @@ use super::bridge::{Goal, NO_INSTANCE, Port, Taste};
 use super::domain::{Domain, Spot};
 use super::draft::Draft;
 use super::occupancy::PieceId;
-use super::passage::{Part, Passages, Site, Way, parts, put, shuffled};
+use super::passage::{Part, Passage, Passages, Site, Way, parts, put, shuffled};
 use super::piece::{Company, Rigid};
 use super::source::{way_out, with_patience};
 use super::tryout::is_clean_where;
@@ -20,6 +20,8 @@ use crate::geom::Ground;
 
 /// Places tried for a first patch.
 const PLACES: usize = 200;
+/// Further patches tried for people to stay together.
+const ENCORES: usize = 60;
 /// Room that the ends of a patch must have to walls, metres.
 const WALL_ROOM: f32 = 0.4;
 /// Where time comes round, so many ticks are left for the way back to the first patch.
@@ -39,6 +41,7 @@ pub(super) struct Wish {
 }
 
 /// Somebody's life so far. Those who are together come in the order of the roles that they played last.
+#[derive(Clone)]
 pub(super) struct Life {
     /// The patches, in order.
     pub pieces: Vec<PieceId>,
@@ -120,22 +123,14 @@ fn live(
     taste: Taste,
     rng: &mut ChaCha8Rng,
 ) -> Option<Vec<Life>> {
-    let domain = draft.base.domain;
-    let mut together = time_together(&meeting.parts, domain);
     let ids = draft.add_patch(meeting.parts.iter().map(|p| (p.role, p.entry)))?;
     meeting.instance = draft.piece(ids[0]).instance;
     let mut lives: Vec<Life> =
         meeting.parts.iter().zip(ids).map(|(part, id)| Life::of(part, id, meeting.instance)).collect();
     come_together(draft, passages, &meeting, &mut lives, rng)?;
-    while together < wish.together && lives.iter().all(|l| l.end.tick < l.latest(domain) - SEEN) {
-        let Some(next) = go_on(draft, passages, &meeting, &mut lives, rng) else { break };
-        together += time_together(&next.parts, domain);
-        meeting = next;
-    }
-    if together < wish.least {
-        return None;
-    }
-    part_ways(draft, passages, &meeting, &mut lives, rng)?;
+    let together = time_together(&meeting.parts, draft.base.domain);
+    let mut together_from = Together { passages, wish, tries: ENCORES };
+    let mut lives = together_from.on(draft, meeting, lives, together, rng)?;
     for life in &mut lives {
         come(draft, life, taste, rng)?;
     }
@@ -178,24 +173,59 @@ fn is_free(draft: &Draft, parts: &[Part]) -> bool {
         && parts.iter().all(|p| view.is_free_rigid(p.role, rigid(p), Company::NONE))
 }
 
-/// Leads the people from where they are into another patch together.
-fn go_on(
-    draft: &mut Draft,
-    passages: &Passages,
-    meeting: &Meeting,
-    lives: &mut [Life],
-    rng: &mut ChaCha8Rng,
-) -> Option<Meeting> {
-    let (library, domain) = (draft.base.library, draft.base.domain);
-    let latest = lives.iter().map(|l| l.latest(domain)).min()?;
-    shuffled(library, passages.of(meeting.kind, Way::Stay), rng).into_iter().find_map(|passage| {
+/// How people stay together and part: a search in depth, since whoever goes on anyhow soon is where nothing leads on.
+struct Together<'p> {
+    passages: &'p Passages<'p>,
+    wish: Wish,
+    /// Patches that may still be tried.
+    tries: usize,
+}
+
+impl Together<'_> {
+    /// The lives of people who have been together for some ticks, until they have parted.
+    fn on(
+        &mut self,
+        draft: &mut Draft,
+        meeting: Meeting,
+        lives: Vec<Life>,
+        together: i32,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Vec<Life>> {
+        let (library, domain) = (draft.base.library, draft.base.domain);
+        let is_late = lives.iter().any(|l| l.end.tick >= l.latest(domain) - SEEN);
+        if together < self.wish.together && !is_late {
+            for passage in shuffled(library, self.passages.of(meeting.kind, Way::Stay), rng) {
+                let mark = draft.mark();
+                let Some((next, lives)) = self.go_on(draft, passage, &meeting, &lives, rng) else { continue };
+                let together = together + time_together(&next.parts, domain);
+                if let Some(lives) = self.on(draft, next, lives, together, rng) {
+                    return Some(lives);
+                }
+                draft.rewind(mark);
+            }
+        }
+        if together < self.wish.least { None } else { part_ways(draft, self.passages, &meeting, lives, rng) }
+    }
+
+    /// Leads the people into another patch together.
+    fn go_on(
+        &mut self,
+        draft: &mut Draft,
+        passage: &Passage,
+        meeting: &Meeting,
+        lives: &[Life],
+        rng: &mut ChaCha8Rng,
+    ) -> Option<(Meeting, Vec<Life>)> {
+        let (library, domain) = (draft.base.library, draft.base.domain);
         let encore = passage.encore.expect("people go on");
         let parts = encore.parts(library, meeting.world_from_patch, meeting.clock);
         let (kind, stay) = (encore.kind, domain.stay(parts[0].entry.at, parts[0].entry.tick));
+        let latest = lives.iter().map(|l| l.latest(domain)).min()?;
         let too_late = domain.cycle.loops() && parts.iter().any(|p| p.exit.tick > latest);
         if too_late || !library.preference.is_wanted_there(kind, stay, rng) || !is_free(draft, &parts) {
             return None;
         }
+        self.tries = self.tries.checked_sub(1)?;
         let mark = draft.mark();
         let ids = draft.add_patch(parts.iter().map(|p| (p.role, p.entry)))?;
         let instance = draft.piece(ids[0]).instance;
@@ -203,6 +233,7 @@ fn go_on(
             draft.rewind(mark);
             return None;
         };
+        let mut lives = lives.to_vec();
         lives.iter_mut().zip(ways).for_each(|(life, way)| life.pieces.extend(way));
         // In the order of the roles that they play now.
         lives.rotate_left(encore.first as usize);
@@ -212,8 +243,8 @@ fn go_on(
         }
         let lead = &library.roles[parts[0].role as usize];
         let world_from_patch = parts[0].entry.at.then(lead.entry.inverse());
-        Some(Meeting { kind, world_from_patch, clock: parts[0].entry.tick - lead.begin, instance, parts })
-    })
+        Some((Meeting { kind, world_from_patch, clock: parts[0].entry.tick - lead.begin, instance, parts }, lives))
+    }
 }
 
 /// Puts in how the people come to their first patch, those who are not in it from the beginning.
@@ -247,13 +278,13 @@ fn part_ways(
     draft: &mut Draft,
     passages: &Passages,
     meeting: &Meeting,
-    lives: &mut [Life],
+    mut lives: Vec<Life>,
     rng: &mut ChaCha8Rng,
-) -> Option<()> {
+) -> Option<Vec<Life>> {
     let (library, loops, horizon) = (draft.base.library, draft.base.domain.cycle.loops(), draft.base.domain.horizon);
     let parts: Vec<bool> = lives.iter().map(|l| loops || l.end.tick < horizon).collect();
     if !parts.contains(&true) {
-        return Some(());
+        return Some(lives);
     }
     let ways = shuffled(library, passages.of(meeting.kind, Way::Part), rng).into_iter().find_map(|passage| {
         put(draft, passage, meeting.site(NO_INSTANCE), |role, piece| parts[role] && (loops || piece.begin < horizon))
@@ -265,7 +296,7 @@ fn part_ways(
         }
         life.pieces.extend(way);
     }
-    Some(())
+    Some(lives)
 }
 
 /// Leads somebody from the beginning of time to their first patch.

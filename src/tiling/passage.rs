@@ -5,36 +5,34 @@
 use std::sync::OnceLock;
 
 use glam::Vec2;
-use rand::{RngExt, SeedableRng};
+use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::bridge::{Goal, NO_INSTANCE, Port, Taste, has_easy_closings};
+use super::bridge::{NO_INSTANCE, Port};
 use super::domain::Domain;
-use super::draft::{Desk, Draft};
+use super::draft::Draft;
 use super::library::Library;
 use super::occupancy::PieceId;
 use super::piece::{Company, Piece};
 use super::scene::Scene;
-use super::tracks::Tracks;
-use super::tryout::is_clean_where;
+use super::study::{BRIEF, passages};
 use crate::geom::{Ground, Polygon};
+use crate::patch::study::{self, Encore, End, Step};
 
 /// When a patch begins on open ground, ticks: nothing comes before the first tick.
-const BEGIN: i32 = 2048;
+pub(super) const BEGIN: i32 = 2048;
 const HORIZON_SECS: f32 = 136.0;
 /// Half the side of the open ground, metres.
 const HALF_SIDE: f32 = 25.0;
-/// Ticks that coming and parting take at least: as many as a stitch may change a body, and some.
-const LEAD: i32 = 24;
-/// Passages of a kind that are enough, and tries to find them.
-const ENOUGH: usize = 6;
-const LEADS: usize = 24;
-const ENCORES: usize = 48;
-/// Patches drawn to go on with, of which most cannot follow.
-const DRAWS: usize = 1500;
-/// A way that this many closings lead along is easy.
-const EASY: usize = 2;
-const TASTE: Taste = Taste { calm: 1.0, expansions: 60 };
+/// The instances that passages of a study lead from and to, in the order of [`End`].
+const ENDS: [u32; 3] = [NO_INSTANCE, NO_INSTANCE - 1, NO_INSTANCE - 2];
+
+/// Where passages are found.
+pub(super) fn open_ground() -> Domain {
+    let region = Polygon::rectangle(Vec2::splat(-HALF_SIDE), Vec2::splat(HALF_SIDE));
+    let scene = Scene { region, duration_secs: HORIZON_SECS, obstacles: vec![], ..Scene::demo() };
+    Domain::new(&scene).expect("open ground has room")
+}
 
 /// One role of a placed patch.
 #[derive(Clone, Copy)]
@@ -61,30 +59,19 @@ pub(super) struct Passage {
     /// The patch that they go on with, if they do.
     pub encore: Option<Encore>,
     /// By role of the patch, the patches on the way, in order of time.
-    ways: Vec<Vec<Piece>>,
+    pub ways: Vec<Vec<Piece>>,
     /// The instance of the patch, and of the encore.
-    ends: [u32; 2],
-}
-
-/// A patch that the people of another go on with.
-#[derive(Clone, Copy)]
-pub(super) struct Encore {
-    /// Its kind.
-    pub kind: u32,
-    /// Who plays its first role: the second role is played by the next of them, and so on round.
-    pub first: u32,
-    patch_from_patch: Ground,
-    ticks: i32,
+    pub ends: [u32; 2],
 }
 
 impl Encore {
     /// Who plays role number `k`.
-    pub fn player(self, k: usize, people: usize) -> usize {
+    pub(super) fn player(self, k: usize, people: usize) -> usize {
         (k + self.first as usize) % people
     }
 
     /// Its roles, after a patch that lies at `world_from_patch` and whose clock begins at `clock`.
-    pub fn parts(self, library: &Library, world_from_patch: Ground, clock: i32) -> Vec<Part> {
+    pub(super) fn parts(self, library: &Library, world_from_patch: Ground, clock: i32) -> Vec<Part> {
         parts(library, self.kind, world_from_patch.then(self.patch_from_patch), clock + self.ticks)
     }
 }
@@ -110,15 +97,14 @@ pub(super) struct Passages<'a> {
 impl<'a> Passages<'a> {
     /// Nothing is known yet.
     pub fn new(library: &'a Library<'a>) -> Self {
-        let region = Polygon::rectangle(Vec2::splat(-HALF_SIDE), Vec2::splat(HALF_SIDE));
-        let scene = Scene { region, duration_secs: HORIZON_SECS, obstacles: vec![], ..Scene::demo() };
-        let ground = Domain::new(&scene).expect("open ground has room");
-        Self { library, ground, known: library.set.kinds.iter().map(|_| Default::default()).collect() }
+        Self { library, ground: open_ground(), known: library.set.kinds.iter().map(|_| Default::default()).collect() }
     }
 
     /// The passages of a kind of several people; worked out when first asked for.
     pub fn of(&self, kind: u32, way: Way) -> &[Passage] {
-        self.known[kind as usize][way as usize].get_or_init(|| self.study(kind, way))
+        self.known[kind as usize][way as usize].get_or_init(|| {
+            self.remembered(kind, way).unwrap_or_else(|| passages(self.library, &self.ground, kind, way, BRIEF))
+        })
     }
 
     /// The same if they are known.
@@ -126,136 +112,27 @@ impl<'a> Passages<'a> {
         self.known[kind as usize][way as usize].get().map(Vec::as_slice)
     }
 
-    fn study(&self, kind: u32, way: Way) -> Vec<Passage> {
-        let tracks = Tracks::on_open_ground(self.library, &self.ground);
-        let mut desk = Desk::default();
-        let mut study = Study {
-            draft: Draft::new(&tracks, &mut desk),
-            parts: parts(self.library, kind, Ground::IDENTITY, BEGIN),
-            rng: ChaCha8Rng::seed_from_u64(u64::from(kind) << 2 | way as u64),
-        };
-        let mut found = Vec::new();
-        match way {
-            Way::Stay => {
-                let (mut draws, mut tries) = (0, 0);
-                while found.len() < ENOUGH && draws < DRAWS && tries < ENCORES {
-                    draws += 1;
-                    let Some(encore) = study.draw() else { continue };
-                    tries += 1;
-                    found.extend(study.go_on(encore));
-                }
-            }
-            Way::Come | Way::Part => {
-                for _ in 0..LEADS {
-                    found.extend(study.lead(matches!(way, Way::Come)));
-                    if found.len() == ENOUGH {
-                        break;
-                    }
-                }
-            }
-        }
-        found
-    }
-}
-
-/// A kind on open ground.
-struct Study<'a> {
-    draft: Draft<'a>,
-    parts: Vec<Part>,
-    rng: ChaCha8Rng,
-}
-
-impl Study<'_> {
-    /// The patch and its instance.
-    fn put(&mut self) -> Option<(Vec<PieceId>, u32)> {
-        self.draft.restart();
-        let ids = self.draft.add_patch(self.parts.iter().map(|p| (p.role, p.entry)))?;
-        let here = self.draft.piece(ids[0]).instance;
-        Some((ids, here))
+    /// What was found out beforehand, with pieces that can be put; `None` where nothing was.
+    fn remembered(&self, kind: u32, way: Way) -> Option<Vec<Passage>> {
+        let study = self.library.set.study.as_ref().filter(|study| study.limits == self.library.limits)?;
+        let ways = study.kinds[kind as usize].as_ref()?;
+        let cast = |p: &&study::Passage| p.encore.is_none_or(|e| self.library.multi.contains(&e.kind));
+        Some(ways[way as usize].iter().filter(cast).map(|p| self.revived(p)).collect())
     }
 
-    /// Ways of all to the patch, or from it.
-    fn lead(&mut self, come: bool) -> Option<Passage> {
-        let (ids, here) = self.put()?;
-        let mut ways = Vec::new();
-        for k in 0..self.parts.len() {
-            let Part { entry, exit, .. } = self.parts[k];
-            let (from, goal, company) = match come {
-                true => (entry, Goal::Since(entry.tick - LEAD), Company { from: NO_INSTANCE, to: here }),
-                false => (exit, Goal::Until(exit.tick + LEAD), Company { from: here, to: NO_INSTANCE }),
+    fn revived(&self, passage: &study::Passage) -> Passage {
+        let revive = |step: &Step| {
+            let [begin, end] = step.ticks.map(|tick| BEGIN + tick);
+            let role = self.library.first_role[step.kind as usize];
+            let piece = match &step.path {
+                Some(path) => Piece::along(self.library, &self.ground, role, NO_INSTANCE, path.clone(), begin, end),
+                None => Piece::rigid(self.library, &self.ground, role, NO_INSTANCE, step.entry, begin),
             };
-            ways.push(self.draft.search(from, goal, company, TASTE, &mut self.rng)?);
-        }
-        let chain = |(way, &id): (&Vec<PieceId>, &PieceId)| match come {
-            true => [way.as_slice(), &[id]].concat(),
-            false => [&[id], way.as_slice()].concat(),
+            let [from, to] = step.ends.map(|end| ENDS[end as usize]);
+            Piece { company: Company { from, to }, ..piece }
         };
-        let chains: Vec<Vec<PieceId>> = ways.iter().zip(&ids).map(chain).collect();
-        self.passage(None, ways, chains, [here, NO_INSTANCE])
-    }
-
-    /// A patch that may follow, where somebody goes there by a closing as it is and the others have easy ways.
-    fn draw(&mut self) -> Option<Encore> {
-        let library = self.draft.base.library;
-        let people = self.parts.len();
-        let next = library.multi[self.rng.random_range(0..library.multi.len())];
-        if library.set.kinds[next as usize].people() != people {
-            return None;
-        }
-        let first = self.rng.random_range(0..people as u32);
-        let from = self.parts[first as usize].exit;
-        let lead = &library.roles[library.first_role[next as usize] as usize];
-        let closings = library.closings_between(from.group, lead.entry_group);
-        if closings.all.is_empty() {
-            return None;
-        }
-        let closing = self.rng.random_range(0..closings.all.len());
-        let patch_from_patch = from.at.then(closings.spans[closing].exit).then(lead.entry.inverse());
-        let tick = from.tick + closings.all[closing].strand.frames() as i32 - 1;
-        let encore = Encore { kind: next, first, patch_from_patch, ticks: tick - lead.begin - BEGIN };
-        let parts = encore.parts(library, Ground::IDENTITY, BEGIN);
-        let easy = (1..people).all(|k| {
-            let from = self.parts[encore.player(k, people)].exit;
-            parts[k].entry.tick > from.tick && has_easy_closings(library, from, parts[k].entry, EASY)
-        });
-        easy.then_some(encore)
-    }
-
-    /// Leads everybody to an encore.
-    fn go_on(&mut self, encore: Encore) -> Option<Passage> {
-        let (ids, here) = self.put()?;
-        let library = self.draft.base.library;
-        let (people, parts) = (ids.len(), encore.parts(library, Ground::IDENTITY, BEGIN));
-        let next = self.draft.add_patch(parts.iter().map(|p| (p.role, p.entry)))?;
-        let there = self.draft.piece(next[0]).instance;
-        let (mut ways, mut chains) = (vec![vec![]; people], Vec::new());
-        for (k, part) in parts.iter().enumerate() {
-            let player = encore.player(k, people);
-            let company = Company { from: here, to: there };
-            let from = self.parts[player].exit;
-            let way = self.draft.search(from, Goal::Port(part.entry), company, TASTE, &mut self.rng)?;
-            chains.push([&[ids[player]], way.as_slice(), &[next[k]]].concat());
-            ways[player] = way;
-        }
-        self.passage(Some(encore), ways, chains, [here, there])
-    }
-
-    /// What was found, if everybody moves cleanly and no box is left lying.
-    fn passage(
-        &mut self,
-        encore: Option<Encore>,
-        ways: Vec<Vec<PieceId>>,
-        chains: Vec<Vec<PieceId>>,
-        ends: [u32; 2],
-    ) -> Option<Passage> {
-        chains.into_iter().for_each(|chain| self.draft.push_track(chain));
-        let piece = |id: PieceId| self.draft.piece(id);
-        let is_way = |id| ways.iter().flatten().any(|&way| way == id);
-        if ways.iter().flatten().any(|&id| piece(id).leaves_box()) || !is_clean_where(&self.draft, is_way) {
-            return None;
-        }
-        let ways = ways.into_iter().map(|way| way.into_iter().map(|id| piece(id).clone()).collect()).collect();
-        Some(Passage { encore, ways, ends })
+        let ways = passage.ways.iter().map(|way| way.iter().map(revive).collect()).collect();
+        Passage { encore: passage.encore, ways, ends: [ENDS[End::Patch as usize], ENDS[End::Encore as usize]] }
     }
 }
 
