@@ -208,9 +208,7 @@ impl PatchSet {
         }
         let of_kind = |(name, problem)| Error::invalid("patch set", format!("kind {name}"), problem);
         problems.extend(self.prop_problems().into_iter().map(of_kind));
-        if let Some((place, problem)) =
-            self.study.as_ref().filter(|_| problems.is_empty()).and_then(|s| s.problem(self))
-        {
+        if let Some((place, problem)) = self.study.as_ref().filter(|_| problems.is_empty()).and_then(|s| s.problem(self)) {
             problems.push(Error::invalid("patch set", place, problem));
         }
         problems
