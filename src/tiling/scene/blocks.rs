@@ -12,7 +12,7 @@ use crate::tiling::wang::{LARGEST_TILE, SMALLEST_TILE};
 const MAX_COLOURS: usize = 8;
 const COLOURS: usize = 2;
 const MAX_VARIANTS: usize = 64;
-const VARIANTS: usize = 2;
+const VARIANTS: usize = 4;
 
 /// Most people that one source lets in.
 const MAX_ARRIVALS: usize = 100_000;

@@ -45,7 +45,7 @@ const WHOLE: f32 = 1e-3;
 /// Most tiles of a region.
 const MOST_TILES: f32 = 10_000.0;
 /// People who cross an edge, per person on a tile.
-const CROSSING: f32 = 0.15;
+const CROSSING: f32 = 0.2;
 /// Tiles are built while this share of the time is not over.
 const BUILDING: f64 = 0.8;
 

@@ -24,10 +24,15 @@ use crate::{Error, Result};
 /// A ribbon is at least this long, so that what a stitch at one end changes hardly meets what one at the other does, ticks.
 const LONG: i32 = 84;
 /// Most patches of a ribbon.
-const MOST_PIECES: usize = 8;
+const MOST_PIECES: usize = 16;
+/// Some linger at the border for up to so many ticks more, so that it is no emptier there than elsewhere.
+const LINGERERS: f32 = 0.8;
+const LINGER: i32 = 240;
+/// How far from the border the middle of a way across is, metres.
+const BESIDE: f32 = 0.4;
 /// Ticks of a ribbon that are seen at least.
 const SEEN: i32 = 20;
-/// Only who walks faster than this crosses, m/s, and walks ahead.
+/// Who crosses walks faster than this, m/s, and ahead, or stands.
 const BRISK: f32 = 0.6;
 const ASKEW: f32 = 0.3;
 /// How far from straight across people go, radians.
@@ -89,7 +94,7 @@ impl Ribbons {
     pub fn new(library: &Library, one: &Scene, (side, colours, count): (f32, u32, usize), seed: u64) -> Result<Self> {
         let mut ribbons = Self { all: vec![] };
         let walks = walks(library);
-        if walks.is_empty() {
+        if !walks.iter().any(|m| is_brisk(m)) {
             let problem =
                 "expected a kind of one person who walks with empty hands, to cross edges of tiles; found none";
             return Err(Error::invalid("patch set", "kinds", problem));
@@ -99,9 +104,15 @@ impl Ribbons {
         for (colour, across) in (0..colours).flat_map(|c| [(c, Across::X), (c, Across::Z)]) {
             let mut rng = ChaCha8Rng::seed_from_u64(mix(mix(seed ^ u64::from(colour)) ^ across as u64));
             for k in 0..count {
-                let draw = |rng: &mut ChaCha8Rng| drawing.crossing(across, colour, k % 2 == 0, rng);
+                // Who lingers finds room less often: it is settled before.
+                let lingers = rng.random_range(0.0..1.0) < LINGERERS;
+                let linger = if lingers { rng.random_range(LINGER / 3..LINGER) } else { 0 };
+                let draw = |n: usize, rng: &mut ChaCha8Rng| {
+                    let length = LONG + if n < TRIES / 2 { linger } else { 0 };
+                    drawing.crossing((across, colour), k % 2 == 0, length, rng)
+                };
                 let fits = |c: &Crossing| ribbons.have_room(c, side, library);
-                let found = (0..TRIES).find_map(|_| draw(&mut rng).filter(fits));
+                let found = (0..TRIES).find_map(|n| draw(n, &mut rng).filter(fits));
                 ribbons.all.push(found.ok_or_else(|| no_room(side, count))?);
             }
         }
@@ -131,7 +142,12 @@ fn no_room(side: f32, count: usize) -> Error {
     Error::invalid("scene", "wang", problem)
 }
 
-/// All walks ahead with empty hands.
+/// True if a move is one of somebody who walks.
+fn is_brisk(m: &Move) -> bool {
+    m.speed > BRISK && m.askew < ASKEW
+}
+
+/// All walks ahead, and what people do who stand, with empty hands.
 fn walks<'l>(library: &'l Library) -> Vec<&'l Move> {
     let light = |m: &Move| {
         let role = &library.roles[m.role as usize];
@@ -139,8 +155,8 @@ fn walks<'l>(library: &'l Library) -> Vec<&'l Move> {
             && !role.leaves_box()
             && role.leap.is_none()
     };
-    let brisk = |m: &&Move| m.speed > BRISK && m.askew < ASKEW && light(m);
-    library.forward.iter().flatten().filter(brisk).collect()
+    let fits = |m: &&Move| (m.speed < BRISK || m.askew < ASKEW) && light(m);
+    library.forward.iter().flatten().filter(fits).collect()
 }
 
 /// Open ground, and the tiles before and beyond an edge, by axis.
@@ -172,8 +188,14 @@ struct Drawing<'a> {
 
 impl Drawing<'_> {
     /// Somebody who crosses somewhere, some time, if that is possible as drawn.
-    fn crossing(&self, across: Across, colour: u32, forward: bool, rng: &mut ChaCha8Rng) -> Option<Crossing> {
-        let roles = self.chain(rng);
+    fn crossing(
+        &self,
+        (across, colour): (Across, u32),
+        forward: bool,
+        length: i32,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Crossing> {
+        let roles = self.chain(length, rng);
         let length: i32 = roles.iter().map(|m| m.ticks).sum();
         let horizon = self.grounds.open.horizon;
         if length < LONG.min(SEEN + horizon) {
@@ -183,7 +205,7 @@ impl Drawing<'_> {
         let along = rng.random_range(0.0..self.side);
         let aslant = rng.random_range(-ASLANT..ASLANT);
         let way = self.lay(&roles, Ground::IDENTITY, begin);
-        // The middle of the way is on the border.
+        // The middle of the way is at the border.
         let middle = way.iter().find(|p| p.end - begin > length / 2)?;
         let middle = middle.path.at(middle.path.len() / 2).position;
         let leads = way.last()?.exit().position;
@@ -192,9 +214,10 @@ impl Drawing<'_> {
             Across::Z => 0.0,
         };
         let heading = heading + aslant + if forward { 0.0 } else { PI } - leads.x.atan2(leads.y);
+        let beside = rng.random_range(-BESIDE..BESIDE);
         let on_border = match across {
-            Across::X => Vec2::new(0.0, along),
-            Across::Z => Vec2::new(along, 0.0),
+            Across::X => Vec2::new(beside, along),
+            Across::Z => Vec2::new(along, beside),
         };
         let from = Ground::new(on_border - Ground::new(Vec2::ZERO, heading).apply(middle), heading);
         let mut crossing =
@@ -227,16 +250,20 @@ impl Drawing<'_> {
         Some(leads)
     }
 
-    /// Walks that follow each other.
-    fn chain(&self, rng: &mut ChaCha8Rng) -> Vec<&Move> {
+    /// Walks that follow each other, at least so many ticks long, those in the middle standing if it is longer than needed.
+    fn chain(&self, length: i32, rng: &mut ChaCha8Rng) -> Vec<&Move> {
         let mut chain = vec![*self.walks.choose(rng).expect("some walk")];
-        let ticks = |chain: &[&Move]| chain.iter().map(|m| m.ticks).sum::<i32>();
-        while ticks(&chain) < LONG && chain.len() < MOST_PIECES {
+        let mut ticks = chain[0].ticks;
+        while ticks < length && chain.len() < MOST_PIECES {
             let group = chain[chain.len() - 1].group;
+            // People stand on the border, not before and after it.
+            let stands = length > LONG && (LONG / 2..length - LONG / 2).contains(&ticks);
             let follows = |m: &&&Move| self.library.roles[m.role as usize].entry_group == group;
-            let next: Vec<&Move> = self.walks.iter().filter(follows).copied().collect();
-            let Some(&next) = next.choose(rng) else { break };
+            let all: Vec<&Move> = self.walks.iter().filter(follows).copied().collect();
+            let liked: Vec<&Move> = all.iter().filter(|m| is_brisk(m) != stands).copied().collect();
+            let Some(&next) = liked.choose(rng).or_else(|| all.choose(rng)) else { break };
             chain.push(next);
+            ticks += next.ticks;
         }
         chain
     }
