@@ -99,5 +99,5 @@ pub fn plain_set() -> PatchSet {
         kinds.push(meeting(&format!("meeting-{i}"), 40 + 10 * i, turn));
     }
     let groups = ["stand", "walk_left", "walk_right"].map(|name| PoseGroup { name: name.into() }).to_vec();
-    PatchSet { groups, kinds }
+    PatchSet { groups, kinds, study: None }
 }

@@ -45,7 +45,7 @@ const WHOLE: f32 = 1e-3;
 /// Most tiles of a region.
 const MOST_TILES: f32 = 10_000.0;
 /// People who cross an edge, per person on a tile.
-const CROSSING: f32 = 0.2;
+const CROSSING: f32 = 0.15;
 /// Tiles are built while this share of the time is not over.
 const BUILDING: f64 = 0.8;
 
@@ -129,6 +129,7 @@ pub(super) fn tile(
     let start = std::time::Instant::now();
     let library = Library::new(set, scene.limits).preferring(&scene.preference);
     let passages = Passages::new(&library);
+    passages.work_out_all();
     let plane = Plane::new(scene, wang, options.seed);
     let one = one_tile(scene, wang);
     let ribbons = ribbons(&library, &one, wang, options.seed)?;
