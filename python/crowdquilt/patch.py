@@ -46,6 +46,6 @@ __all__ = [
 ]
 
 
-def cut(source: str | PathLike[str], captures: str | PathLike[str] | None = None) -> PatchSet:
+def cut(source: str | PathLike[str], captures: str | PathLike[str] | None = None, *, study: bool = True) -> PatchSet:
     """Make the patch set of captures; see `make`, which also tells how it came about."""
-    return make(source, captures).set
+    return make(source, captures, study=study).set

@@ -27,7 +27,7 @@ def sample_walks() -> PatchSet:
     """The patch set of the generated captures: how people walk if nobody says otherwise."""
     with tempfile.TemporaryDirectory() as folder:
         samples.write(Path(folder), 1)
-        return patch.cut(Path(folder))
+        return patch.cut(Path(folder), study=False)
 
 
 def save(world: World, path: Path) -> None:

@@ -4,8 +4,8 @@
 //!
 //! Versions: 1 had no `props`; 2 has them per kind: boxes with name, size, grip (where the middle is, seen from the
 //! middle between the palms: up, ahead), holds (role, begin, end: frames of the patch's clock), sat (who sits on it,
-//! likewise; absent if nobody) and where they rest before and after (middle, heading). 3 may have a `study` (see
-//! [`super::study`]). All are read, 3 is written.
+//! likewise; absent if nobody) and where they rest before and after (middle, heading). Both are read, 2 is written. The header
+//! may have a `study` (see [`super::study`]).
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ use crate::motion::{FPS, JOINT_COUNT, Motion, MotionPath, Plant, Skeleton, canon
 use crate::{Error, Result};
 
 const MAGIC: &[u8; 8] = b"CQPATCH\0";
-const VERSION: u32 = 3;
+const VERSION: u32 = 2;
 
 #[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct Header {
@@ -208,7 +208,9 @@ impl PatchSet {
         }
         let of_kind = |(name, problem)| Error::invalid("patch set", format!("kind {name}"), problem);
         problems.extend(self.prop_problems().into_iter().map(of_kind));
-        if let Some((place, problem)) = self.study.as_ref().filter(|_| problems.is_empty()).and_then(|s| s.problem(self)) {
+        if let Some((place, problem)) =
+            self.study.as_ref().filter(|_| problems.is_empty()).and_then(|s| s.problem(self))
+        {
             problems.push(Error::invalid("patch set", place, problem));
         }
         problems

@@ -88,7 +88,8 @@ impl Study {
     /// What is wrong with it, seen from its set; the first problem with the kind where it is.
     pub(super) fn problem(&self, set: &PatchSet) -> Option<(String, String)> {
         if self.kinds.len() != set.kinds.len() {
-            let problem = format!("expected what was found out about {} kinds, found {}", set.kinds.len(), self.kinds.len());
+            let problem =
+                format!("expected what was found out about {} kinds, found {}", set.kinds.len(), self.kinds.len());
             return Some(("study".into(), problem));
         }
         let of_kind = |(k, ways): (usize, &Option<[Vec<Passage>; 3]>)| {

@@ -25,7 +25,7 @@ use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
 use super::passage::Passages;
 use super::plan::Plan;
 use super::rehearsal::Rehearsal;
-use super::seed::seed_person;
+use super::seed::{seed_person, stand_beside};
 use super::source::{arrivals, let_in};
 use super::team::line_up;
 use super::tracks::{Tracks, Window};
@@ -50,6 +50,16 @@ const HURDLE_PATIENCE: usize = 200;
 const GATHER_PATIENCE: usize = 400;
 /// States expanded to lead people to and from where they meet.
 const GATHER_EXPANSIONS: usize = 300;
+/// More people per m^2 than that is dense: then so large a share of their time those who meet do so at least, since whoever
+/// comes and goes needs the more room.
+const DENSE: f32 = 0.85;
+const DENSE_TOGETHER: f32 = 0.5;
+/// The part of the people who then stand close together, up to 1.2 and from 2 people per m^2.
+const STANDERS: [f32; 2] = [0.3, 0.75];
+const STAND_DENSITIES: [f32; 2] = [1.2, 2.0];
+/// Failed tries in a row after which nobody more stands close to others, and states expanded for each.
+const STAND_PATIENCE: usize = 400;
+const STAND: Taste = Taste { calm: 0.02, expansions: 200 };
 /// Where those to come would have to be together for more than this share of their time, no more are gathered.
 const HOPELESS: f32 = 0.7;
 /// States expanded for each step that it takes to the end of time.
@@ -234,6 +244,7 @@ pub(super) fn fill<'a>(
     }
     engine.cross(crossers.iter().collect())?;
     (engine.most, engine.visitors) = (crossers.len() + residents, 0);
+    engine.stand();
     engine.add_the_others();
     engine.finish(TILE_REFILLS);
     Ok(engine.crew.tracks)
@@ -255,8 +266,12 @@ pub(super) fn mend_laid<'a>(
 
 /// The denser the crowd, the more people rather stand than walk.
 fn calm(scene: &Scene) -> f32 {
-    let density = scene.characters as f32 / scene.region.area();
-    (1.58 - density).clamp(0.3, 1.3)
+    (1.58 - density(scene)).clamp(0.3, 1.3)
+}
+
+/// People per m^2.
+fn density(scene: &Scene) -> f32 {
+    scene.characters as f32 / scene.region.area()
 }
 
 fn state(tracks: &Tracks, phase: Phase) -> Progress {
@@ -310,6 +325,7 @@ impl<'a> Engine<'a> {
     /// Adds people who meet, then those who come alone, and patches of several people where company is short.
     fn populate(&mut self) {
         self.gather();
+        self.stand();
         self.add_the_others();
     }
 
@@ -415,6 +431,7 @@ impl<'a> Engine<'a> {
             return;
         }
         let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
+        let least = if density(self.scene) > DENSE { DENSE_TOGETHER } else { 0.0 };
         let mut failures = 0;
         while self.crew.tracks.company() < wish && failures < GATHER_PATIENCE && self.goes_on(Phase::Seed) {
             let (left, tracks) = (self.people_left(), &self.crew.tracks);
@@ -422,7 +439,8 @@ impl<'a> Engine<'a> {
             if left < 2 || need > HOPELESS {
                 break;
             }
-            let wishes: Vec<Wish> = (0..self.crew.batch.min(left.div_ceil(2))).map(|_| self.plan.draw(need)).collect();
+            let wishes: Vec<Wish> =
+                (0..self.crew.batch.min(left.div_ceil(2))).map(|_| self.plan.draw(need.max(least))).collect();
             let made = self.crew.work(
                 wishes.len(),
                 |i, draft, rng| gather(draft, passages, wishes[i], taste, rng),
@@ -430,6 +448,23 @@ impl<'a> Engine<'a> {
             );
             self.plan.learn(&wishes, &made);
             failures = if made.contains(&true) { 0 } else { failures + made.len() };
+        }
+    }
+
+    /// Where it is to be dense, adds people who stand close together, so that the others have room.
+    fn stand(&mut self) {
+        if density(self.scene) <= DENSE || !self.scene.teams.is_empty() {
+            return;
+        }
+        let [sparse, full] = STAND_DENSITIES;
+        let dense = ((density(self.scene) - sparse) / (full - sparse)).clamp(0.0, 1.0);
+        let standers = (STANDERS[0] + (STANDERS[1] - STANDERS[0]) * dense) * self.scene.characters as f32;
+        let most = self.most.min(self.crew.tracks.tracks.len() + standers as usize);
+        let mut failures = 0;
+        while self.crew.tracks.tracks.len() < most && failures < STAND_PATIENCE && self.goes_on(Phase::Seed) {
+            let count = self.crew.batch.min(most - self.crew.tracks.tracks.len());
+            let made = self.crew.work(count, |_, draft, rng| stand_beside(draft, STAND, rng), |_, _| true);
+            failures = if made.contains(&true) { 0 } else { failures + count };
         }
     }
 

@@ -227,7 +227,14 @@ mod tests {
 
     #[test]
     fn everybody_comes_parts_and_goes_on_by_pieces_that_join() {
-        with(&sociable_set(), |library, passages| {
+        let mut set = sociable_set();
+        all_join(&set);
+        super::super::study(&mut set, Limits::default(), &|_| true).unwrap();
+        all_join(&PatchSet::from_bytes(&set.to_bytes()).unwrap());
+    }
+
+    fn all_join(set: &PatchSet) {
+        with(set, |library, passages| {
             let close = |a: Port, b: Port| {
                 a.tick == b.tick && a.group == b.group && a.at.position.distance(b.at.position) < 1e-3
             };

@@ -1,4 +1,7 @@
-//! Seeding: one more person, placed somewhere free and led by single-person patches to both edges of time.
+//! Seeding: one more person, placed somewhere free and led by single-person patches to both edges of time; where it is
+//! dense, close to others.
+
+use std::f32::consts::PI;
 
 use glam::Vec2;
 use rand::RngExt;
@@ -9,6 +12,7 @@ use super::bridge::{NO_INSTANCE, STANDING_SPEED, Taste};
 use super::domain::Spot;
 use super::draft::Draft;
 use super::library::{Library, Move};
+use super::occupancy::PieceId;
 use super::piece::Piece;
 use super::prefer::Stay;
 use super::tryout::is_clean;
@@ -16,24 +20,64 @@ use crate::geom::Ground;
 
 /// Places tried for one person.
 const PLACES: usize = 20;
+/// Who stands close to others is tried so near first, and then so much farther each time, metres.
+const NEAREST: f32 = 0.4;
+const CLOSER: f32 = 0.05;
+/// One of so many begins a group of their own.
+const APART: u32 = 40;
+/// Whoever stands stays within this, metres.
+const ASTIR: f32 = 0.5;
 
 /// Adds a person who is at a random place of the domain at first, until the end of time or out; one who begins with a box in the hands,
 /// or by taking one up, if so wished.
 pub(super) fn seed_person(draft: &mut Draft, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
-    let first = (0..PLACES).find_map(|_| first_piece(draft, laden, taste, rng))?;
-    let (entry, exit) = (draft.base.library.entry_of(&first), draft.base.library.exit_of(&first));
-    let mut pieces = vec![draft.add(first)];
-    pieces.extend(draft.lead_to_the_end(entry, exit, taste, rng)?);
-    draft.push_track(pieces);
+    let first = (0..PLACES).find_map(|_| {
+        let role = first_role(draft.base.library, laden, taste, rng);
+        first_piece(draft, role, anywhere(draft, rng), rng)
+    })?;
+    live(draft, first, taste, rng)?;
     is_clean(draft).then_some(())
 }
 
-/// A free patch of one person that is going on at tick 0, or at any where time comes round.
-fn first_piece(draft: &Draft, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Piece> {
+/// Adds a person who stands as near somebody who is there at first as there is room, all the time.
+pub(super) fn stand_beside(draft: &mut Draft, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+    let tracks = draft.base;
+    let (others, begin) = (tracks.tracks.len(), tracks.domain.frames().start.max(0));
+    let other = rng.random_range(0..others + 1);
+    let near = match other < others && tracks.is_there(other, begin) && rng.random_range(0..APART) > 0 {
+        true => tracks.state_at(other, begin).position,
+        false => anywhere(draft, rng),
+    };
+    let role = first_role(tracks.library, false, taste, rng);
+    let aside = Vec2::from_angle(rng.random_range(-PI..PI));
+    let first = (0..PLACES).find_map(|k| {
+        let place = near + aside * (NEAREST + k as f32 * CLOSER);
+        first_piece(draft, role, place, rng)
+    })?;
+    let here = first.entry().position;
+    let pieces = live(draft, first, taste, rng)?;
+    let stays = pieces.iter().all(|&id| draft.piece(id).entry().position.distance(here) < ASTIR);
+    (stays && is_clean(draft)).then_some(())
+}
+
+/// Adds the life of somebody who begins with a piece; its pieces.
+fn live(draft: &mut Draft, first: Piece, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Vec<PieceId>> {
+    let (entry, exit) = (draft.base.library.entry_of(&first), draft.base.library.exit_of(&first));
+    let mut pieces = vec![draft.add(first)];
+    pieces.extend(draft.lead_to_the_end(entry, exit, taste, rng)?);
+    draft.push_track(pieces.clone());
+    Some(pieces)
+}
+
+fn anywhere(draft: &Draft, rng: &mut ChaCha8Rng) -> Vec2 {
+    let domain = draft.base.domain;
+    Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y))
+}
+
+/// A patch of one person who is at a place at tick 0, or at any where time comes round, if it is free.
+fn first_piece(draft: &Draft, role: u32, place: Vec2, rng: &mut ChaCha8Rng) -> Option<Piece> {
     let (library, domain) = (draft.base.library, draft.base.domain);
-    let role = first_role(library, laden, taste, rng);
-    let place = Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y));
-    let heading = rng.random_range(-std::f32::consts::PI..std::f32::consts::PI);
+    let heading = rng.random_range(-PI..PI);
     let lead = rng.random_range(0..library.roles[role as usize].ticks);
     let tick = if domain.cycle.loops() { rng.random_range(0..domain.horizon) } else { 0 };
     let stay = Stay::new(Ground::new(place, heading), tick);

@@ -17,11 +17,11 @@ use super::passage::{BEGIN, Part, Passage, Way, open_ground, parts};
 use super::piece::{Company, Piece};
 use super::tracks::Tracks;
 use super::tryout::is_clean_where;
-use crate::Result;
 use crate::deform::Limits;
 use crate::geom::Ground;
 use crate::patch::PatchSet;
 use crate::patch::study::{self as patch, Encore, End, Step, Study};
+use crate::{Error, Result};
 
 /// Ticks that coming and parting take at least: as many as a stitch may change a body, and some.
 pub(super) const LEAD: i32 = 24;
@@ -52,12 +52,12 @@ const THOROUGH: Effort = Effort { enough: 16, leads: 48, encores: 200, draws: 80
 /// Finds out how the people of a set's kinds come, go on together and part, for tiling with it within `limits`; what was
 /// known before is forgotten. Kinds that only some scenes use (jumps over something, hops) are left out.
 ///
-/// `progress` is told how much is done, from 0 to 1, and stops by returning false; nothing is changed then. The same set
-/// gives the same study for any number of threads. O(kinds of several people x tries).
+/// `progress` is told how much is done, from 0 to 1, and stops by returning false; the set is without a study then. The same
+/// set gives the same study for any number of threads. O(kinds of several people x tries).
 ///
 /// # Errors
-/// The set cannot be tiled with at all.
-pub fn study(set: &mut PatchSet, limits: Limits, progress: &mut dyn FnMut(f32) -> bool) -> Result<bool> {
+/// The set cannot be tiled with at all, or stopped.
+pub fn study(set: &mut PatchSet, limits: Limits, progress: &dyn Fn(f32) -> bool) -> Result<()> {
     set.study = None;
     let plain = admitted(&Scene::demo(), set, Method::Engine)?;
     let library = Library::new(&plain, limits);
@@ -69,7 +69,7 @@ pub fn study(set: &mut PatchSet, limits: Limits, progress: &mut dyn FnMut(f32) -
     };
     for (done, some) in library.multi.chunks(CHUNK).enumerate() {
         if !progress((done * CHUNK) as f32 / library.multi.len() as f32) {
-            return Ok(false);
+            return Err(Error::Stopped);
         }
         let found: Vec<(u32, [_; 3])> = some.par_iter().with_max_len(1).map(ways).collect();
         found.into_iter().for_each(|(kind, ways)| kinds[index[kind as usize] as usize] = Some(ways));
@@ -77,7 +77,7 @@ pub fn study(set: &mut PatchSet, limits: Limits, progress: &mut dyn FnMut(f32) -
     drop(library);
     drop(plain);
     set.study = Some(Study { limits, kinds });
-    Ok(true)
+    Ok(())
 }
 
 fn index_of(set: &PatchSet, name: &str) -> u32 {
@@ -241,5 +241,80 @@ impl Search<'_> {
         }
         let ways = ways.into_iter().map(|way| way.into_iter().map(|id| piece(id).clone()).collect()).collect();
         Some(Passage { encore, ways, ends })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::common::plain_set;
+    use super::*;
+
+    fn studied() -> PatchSet {
+        let mut set = plain_set();
+        study(&mut set, Limits::default(), &|_| true).unwrap();
+        set
+    }
+
+    #[test]
+    fn a_study_is_kept_in_the_file_bit_by_bit() {
+        let set = studied();
+        assert!(set.study.as_ref().unwrap().kinds.iter().flatten().flatten().any(|passages| !passages.is_empty()));
+        assert_eq!(PatchSet::from_bytes(&set.to_bytes()).unwrap().study, set.study);
+    }
+
+    #[test]
+    fn it_is_the_same_for_any_number_of_threads() {
+        let with = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(studied);
+        assert_eq!(with(1).study, with(3).study);
+    }
+
+    #[test]
+    fn who_stops_it_gets_none() {
+        let mut set = studied();
+        assert!(matches!(study(&mut set, Limits::default(), &|_| false), Err(Error::Stopped)));
+        assert!(set.study.is_none());
+    }
+
+    #[test]
+    fn what_needs_a_kind_that_is_left_out_is_not_known_any_more() {
+        let set = studied();
+        let all = set.only(|_| true);
+        assert_eq!(all, set);
+        let study = set.study.as_ref().unwrap();
+        let used: Vec<u32> = study
+            .kinds
+            .iter()
+            .flatten()
+            .flatten()
+            .flatten()
+            .flat_map(|p| p.ways.iter().flatten())
+            .map(|s| s.kind)
+            .collect();
+        let without = set.only(|kind| kind.name != set.kinds[used[0] as usize].name);
+        assert_eq!(without.kinds.len() + 1, set.kinds.len());
+        assert!(without.validate().is_empty());
+        let known = |set: &PatchSet| set.study.as_ref().unwrap().kinds.iter().flatten().count();
+        assert!(known(&without) < known(&set));
+    }
+
+    #[test]
+    fn broken_studies_are_told() {
+        let set = studied();
+        let broken = |spoil: &dyn Fn(&mut Study)| {
+            let mut set = set.clone();
+            spoil(set.study.as_mut().unwrap());
+            PatchSet::from_bytes(&set.to_bytes()).unwrap_err().to_string()
+        };
+        fn step(study: &mut Study) -> &mut Step {
+            let ways = study.kinds.iter_mut().flatten().flatten().flatten().flat_map(|p| &mut p.ways);
+            ways.flatten().next().unwrap()
+        }
+        let name = |message: String| assert!(message.contains("study of kind"), "{message}");
+        name(broken(&|study| step(study).kind = 10_000));
+        name(broken(&|study| step(study).entry.position.x = f32::NAN));
+        name(broken(&|study| step(study).ticks[1] = i32::MAX));
+        name(broken(&|study| step(study).ticks = [i32::MAX, i32::MIN]));
+        let short = broken(&|study| study.kinds.truncate(1));
+        assert!(short.contains("expected what was found out about"), "{short}");
     }
 }

@@ -34,8 +34,11 @@ impl Study {
             passages.len() as u32
         };
         let people = |ways: &[Vec<Passage>; 3]| ways.iter().flatten().next().map_or(0, |p| p.ways.len() as u32);
-        let kinds =
-            self.kinds.iter().map(|ways| ways.as_ref().map(|ways| (people(ways), ways.each_ref().map(&mut put)))).collect();
+        let kinds = self
+            .kinds
+            .iter()
+            .map(|ways| ways.as_ref().map(|ways| (people(ways), ways.each_ref().map(&mut put))))
+            .collect();
         writer.array("study_numbers", &numbers);
         writer.array("study_places", &places);
         StudyHeader { limits: self.limits, kinds }
