@@ -2,7 +2,7 @@
 //!
 //! An edge's colour says who crosses it, where, when and which way (`ribbon.rs`). A tile leads these people from and to its
 //! borders and is filled like any scene; nobody else comes near its borders (`tile.rs`). Which tile lies where follows from
-//! a hash of the place (`plane.rs`), so that it repeats nowhere. Laid tiles are chained at their borders (`lay.rs`) and
+//! a hash of the place (`plane.rs`), so that there is no period. Laid tiles are chained at their borders (`lay.rs`) and
 //! made into bodies whole.
 
 mod lay;
