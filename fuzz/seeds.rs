@@ -13,10 +13,12 @@ mod glb_file;
 use std::path::Path;
 
 use crowdquilt::export::clip_glb;
+use crowdquilt::geom::Polygon;
 use crowdquilt::motion::{Clip, bvh, canonical};
 use crowdquilt::samples;
+use crowdquilt::tiling::{Keep, Options, Scene, Session, tile_in};
 use crowdquilt::world::scenes;
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 
 /// Two joints, and two people of them who move.
 const ASF: &str = ":version 1.10\n:units\n mass 1.0\n length 0.45\n angle deg\n:root\n order TX TY TZ RX RY RZ\n axis XYZ\n \
@@ -45,6 +47,7 @@ fn main() -> std::io::Result<()> {
     write("fbx", "small_binary.fbx", &fbx::binary())?;
     write("crowd", "small.crowd", &fixture::lattice(1, 1).to_bytes())?;
     write("patches", "small.patches", &small_set().to_bytes())?;
+    write("tiling", "small.tiling", &checkpoint()?)?;
     write("scene", "plaza.toml", include_bytes!("../examples/plaza.toml"))?;
     write("compose", "meet.toml", include_bytes!("../examples/compose/meet-and-bow.compose.toml"))?;
     write("compose", "rows.toml", include_bytes!("../examples/compose/rows-bow.compose.toml"))?;
@@ -75,6 +78,19 @@ fn clip() -> Clip {
 fn text_of(glb: &[u8]) -> Vec<u8> {
     let length = u32::from_le_bytes([glb[12], glb[13], glb[14], glb[15]]) as usize;
     glb[20..20 + length].to_vec()
+}
+
+/// What is kept of two people tiled.
+fn checkpoint() -> std::io::Result<Vec<u8>> {
+    let path = std::env::temp_dir().join(format!("crowdquilt-seed-{}.tiling", std::process::id()));
+    let scene = Scene { interaction: 0.0, ..Scene::new(Polygon::rectangle(Vec2::ZERO, Vec2::splat(6.0)), 3.0, 2) };
+    let keep = Keep { path: &path, every_secs: 60.0, patches: Some("small") };
+    let session = Session { from: None, keep: Some(keep) };
+    tile_in(session, &scene, &fixture::patch_set(), &Options::default(), &mut |_| true)
+        .map_err(std::io::Error::other)?;
+    let bytes = std::fs::read(&path)?;
+    std::fs::remove_file(&path)?;
+    Ok(bytes)
 }
 
 /// The kind that is shortest.

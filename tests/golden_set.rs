@@ -87,7 +87,7 @@ fn set() -> PatchSet {
         mirrored: true,
     };
     let groups = ["stand", "walk_left", "walk_right"].map(|name| PoseGroup { name: name.into() });
-    PatchSet { groups: groups.to_vec(), kinds: vec![alone, pair] }
+    PatchSet { groups: groups.to_vec(), kinds: vec![alone, pair], study: None }
 }
 
 /// Where the joints are at some frames of every role.

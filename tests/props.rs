@@ -100,6 +100,7 @@ fn hand_over(tone: usize) -> Crowd {
     let person = |(i, fragments): (usize, Vec<FragmentUse>)| Character {
         begin: 0,
         build: if tone == 0 { Build::canonical() } else { builds[(i + tone) % builds.len()][1].clone() },
+        team: None,
         fragments,
         root: vec![],
         rotations: vec![],

@@ -6,7 +6,6 @@ import tempfile
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import partial
 from math import sin
 from pathlib import Path
@@ -16,53 +15,27 @@ from rich.table import Table
 
 from crowdquilt import motion, patch, refine, samples
 from crowdquilt._core import PatchSet, Scene, measure_patches, measure_poses, measure_replay, measure_street, tile
+from crowdquilt.bench_row import Row, row
 from crowdquilt.bench_tiling import EXAMPLES, PAPER, STATIC, example, growth, planes, repeating, static
 
 Say = Callable[[str], None]
 
 
-@dataclass(frozen=True)
-class Row:
-    """One measured figure beside the published one; `ratio` is ours over the reference, None without one."""
-
-    area: str
-    row: str
-    ours: float
-    unit: str
-    reference: float | None
-    source: str
-    ratio: float | None
-
-
-def row(area: str, name: str, ours: float, unit: str = "", reference: float | None = None, source: str = "") -> Row:
-    """A row with its ratio."""
-    ratio = ours / reference if reference else None
-    return Row(area, name, ours, unit, reference, source, ratio)
-
-
 def tiling(seeds: int, say: Say, patches: PatchSet | None = None) -> list[Row]:
     """The paper's scenes, denser ones and larger ones; with another patch set only those that any set can play."""
-    figures = []
+    rows = []
     if patches is None:
         with tempfile.TemporaryDirectory() as folder:
             samples.write(Path(folder), 1)
             patches = patch.cut(Path(folder))
-        figures += [figure for scene in STATIC for figure in static(scene, patches, seeds, say)]
-        figures += [figure for scene in EXAMPLES for figure in example(scene, patches, seeds, say)]
-        figures += repeating(patches, seeds, say)
-        figures += planes(patches, say)
-        figures += growth(patches, say)
+        rows += [found for scene in STATIC for found in static(scene, patches, seeds, say)]
+        rows += [found for scene in EXAMPLES for found in example(scene, patches, seeds, say)]
+        rows += repeating(patches, seeds, say)
+        rows += planes(patches, say)
+        rows += growth(patches, say)
     else:
-        figures += [figure for scene in STATIC for figure in static(scene, patches, seeds, say, published=True)]
-    kinds = row("tiling", "kinds to choose from", len(patches), "", 43, PAPER)
-    source = {True: PAPER, False: ""}
-    return [
-        kinds,
-        *(
-            row("tiling", f"{f.row}: {f.name}", float(f.value), f.unit, f.reference, source[f.reference is not None])
-            for f in figures
-        ),
-    ]
+        rows += [found for scene in STATIC for found in static(scene, patches, seeds, say, published=True)]
+    return [row("tiling", "kinds to choose from", len(patches), "", 43, PAPER), *rows]
 
 
 MINUTES = 1.0

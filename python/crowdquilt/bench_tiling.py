@@ -14,20 +14,10 @@ from statistics import median
 
 from crowdquilt import check
 from crowdquilt._core import Outcome, PatchSet, Scene, tile
+from crowdquilt.bench_row import Row, row
 
 PAPER = "Hyun et al. 2013, table 1 and section 7, 2.93 GHz Core i7"
 Say = Callable[[str], None]
-
-
-@dataclass(frozen=True)
-class Figure:
-    """One measured figure of a row."""
-
-    row: str
-    name: str
-    value: float
-    unit: str = ""
-    reference: float | None = None
 
 
 @dataclass(frozen=True)
@@ -103,14 +93,14 @@ def runs(scene: Scene, patches: PatchSet, seeds: int, method: str = "engine") ->
 def seams_of(report: check.Report) -> dict[str, float]:
     """By seam the largest value in metres of its rows."""
     worst: dict[str, float] = {}
-    for row in report.rows:
-        seam = row.row.split(":")[0]
-        if seam in ("seam in time", "border") and row.unit == "m":
-            worst[seam] = max(worst.get(seam, 0.0), row.value)
+    for found in report.rows:
+        seam = found.row.split(":")[0]
+        if seam in ("seam in time", "border") and found.unit == "m":
+            worst[seam] = max(worst.get(seam, 0.0), found.value)
     return worst
 
 
-def static(scene: Static, patches: PatchSet, seeds: int, say: Say, published: bool = False) -> list[Figure]:
+def static(scene: Static, patches: PatchSet, seeds: int, say: Say, published: bool = False) -> list[Row]:
     """The figures of a static scene: medians over the seeds, and the slowest. `published`: as many people as there."""
     people = int(scene.people) if published and scene.people else scene.characters
     wish = Scene.demo().replace(characters=people, interaction=scene.interaction)
@@ -118,11 +108,11 @@ def static(scene: Static, patches: PatchSet, seeds: int, say: Say, published: bo
     figures = figures_of(scene, made, "")
     if scene.row in BASELINE:
         figures += figures_of(scene, runs(wish, patches, min(seeds, 2), "paper"), "Algorithms 1 and 2 here: ")
-    say(f"tiling: {scene.row}: {figures[0].value:.2f} s, {sum(r.ok for r in made)} of {seeds} perfect and checked")
+    say(spread(scene.row, made))
     return figures
 
 
-def example(scene: Example, patches: PatchSet, seeds: int, say: Say) -> list[Figure]:
+def example(scene: Example, patches: PatchSet, seeds: int, say: Say) -> list[Row]:
     """The figures of an example scene; none where the repository's examples are not at hand."""
     file = SCENES / f"{scene.row}.toml"
     if not file.exists():
@@ -131,12 +121,12 @@ def example(scene: Example, patches: PatchSet, seeds: int, say: Say) -> list[Fig
     made = runs(Scene.load(file), patches, seeds)
     figures = figures_of(scene, made, "")
     if scene.row == "hopping":
-        figures.append(Figure(scene.row, "bumps, fewest", min(instances_with(r.outcome, {"bump"}) for r in made)))
+        figures.append(figure(scene.row, "bumps, fewest", min(instances_with(r.outcome, {"bump"}) for r in made)))
     if scene.row == "boxes":
-        figures.append(Figure(scene.row, "boxes, fewest", min(r.summary.props for r in made)))
+        figures.append(figure(scene.row, "boxes, fewest", min(r.summary.props for r in made)))
         kinds = (len(kinds_with(r.outcome, BOX_LABELS)) for r in made)
-        figures.append(Figure(scene.row, "kinds with boxes, fewest", min(kinds), "", 16))
-    say(f"tiling: {scene.row}: {figures[0].value:.2f} s, {sum(r.ok for r in made)} of {seeds} perfect and checked")
+        figures.append(figure(scene.row, "kinds with boxes, fewest", min(kinds), "", 16))
+    say(spread(scene.row, made))
     return figures
 
 
@@ -152,21 +142,40 @@ def kinds_with(outcome: Outcome, labels: set[str]) -> set[str]:
     return {kind.name.removesuffix("-mirror") for kind in used if labels & set(kind.labels)}
 
 
-def figures_of(scene: Static | Example, made: list[Run], prefix: str) -> list[Figure]:
+def figures_of(scene: Static | Example, made: list[Run], prefix: str) -> list[Row]:
     """What is told of a scene's runs."""
 
-    def figure(name: str, value: float, unit: str = "", reference: float | None = None) -> Figure:
-        return Figure(scene.row, prefix + name, value, unit, reference)
+    def figures(name: str, values: list[float], unit: str = "", reference: float | None = None) -> list[Row]:
+        told = {"least": min(values), "median": median(values), "most": max(values)}
+        return [figure(scene.row, f"{prefix}{name}, {which}", value, unit, reference) for which, value in told.items()]
 
+    summaries = [r.summary for r in made]
     return [
-        figure("solve time, median", median(r.outcome.solve_secs for r in made), "s", scene.secs),
-        figure("solve time, slowest", max(r.outcome.solve_secs for r in made), "s", scene.secs),
-        figure("characters, fewest", min(r.summary.characters for r in made), "", scene.people),
-        figure("patches placed, fewest", min(r.summary.instances for r in made), "", scene.patches),
-        figure("share of time in patches of two or more, least", min(r.summary.multi_person_share for r in made)),
-        figure("danglings, all runs", sum(r.summary.danglings for r in made), "", 0.0),
-        figure("perfect and checked, share", sum(r.ok for r in made) / len(made)),
+        figure(scene.row, f"{prefix}perfect and checked, of {len(made)} seeds", sum(r.ok for r in made)),
+        *figures("seconds", [r.outcome.solve_secs for r in made], "s", scene.secs),
+        *figures("characters", [s.characters for s in summaries], "", scene.people),
+        *figures("patches placed", [s.instances for s in summaries], "", scene.patches),
+        *figures("share of time in patches of two or more", [s.multi_person_share for s in summaries]),
+        figure(scene.row, f"{prefix}danglings, all runs", sum(s.danglings for s in summaries), "", 0.0),
     ]
+
+
+def figure(name: str, what: str, value: float, unit: str = "", reference: float | None = None) -> Row:
+    """One measured figure of a row."""
+    return row("tiling", f"{name}: {what}", float(value), unit, reference, "" if reference is None else PAPER)
+
+
+def spread(name: str, made: list[Run]) -> str:
+    """One line on the runs of a row: how many are perfect, and least, median and most of what they reached."""
+
+    def three(values: list[float], form: str) -> str:
+        return "/".join(format(value, form) for value in (min(values), median(values), max(values)))
+
+    secs = three([r.outcome.solve_secs for r in made], ".2f")
+    people = three([r.summary.characters for r in made], ".0f")
+    share = three([100 * r.summary.multi_person_share for r in made], ".1f")
+    good = sum(r.ok for r in made)
+    return f"tiling: {name}: perfect {good}/{len(made)}, {secs} s, {people} people, {share} % together"
 
 
 ALONE = """
@@ -199,21 +208,21 @@ def square(side: int, density: float) -> str:
     return f"region = {corners}\nduration_secs = 20\ndensity = {density}\ninteraction = 0.26\n"
 
 
-def growth(patches: PatchSet, say: Say) -> list[Figure]:
+def growth(patches: PatchSet, say: Say) -> list[Row]:
     """Time per character as the square grows, about half a person per square metre; and what a second thread gains."""
     figures = []
     for side, density in SQUARES:
         run = alone(patches, square(side, density))
         name, people = f"{side} x {side} m", int(run["people"])
         figures += [
-            Figure("area-growth", f"{name}, {people} people", run["secs"], "s"),
-            Figure("area-growth", f"{name}, per character", 1000 * run["secs"] / people, "ms"),
-            Figure("area-growth", f"{name}, peak memory of the process", run["peak"] / 2**20, "GiB"),
-            Figure("area-growth", f"{name}, perfect and checked", float(run["ok"])),
+            figure("area-growth", f"{name}, {people} people", run["secs"], "s"),
+            figure("area-growth", f"{name}, per character", 1000 * run["secs"] / people, "ms"),
+            figure("area-growth", f"{name}, peak memory of the process", run["peak"] / 2**20, "GiB"),
+            figure("area-growth", f"{name}, perfect and checked", float(run["ok"])),
         ]
         say(f"tiling: area-growth: {people} people in {run['secs']:.2f} s")
     one, two = (alone(patches, square(*THREADED), threads)["secs"] for threads in (1, 2))
-    figures.append(Figure("area-growth", f"{THREADED[0]} x {THREADED[0]} m, one thread / two", one / two))
+    figures.append(figure("area-growth", f"{THREADED[0]} x {THREADED[0]} m, one thread / two", one / two))
     return figures
 
 
@@ -234,7 +243,7 @@ REPEATING = (
 PAPER_REPEATING = Static("repeating", 55, 0.3, 813, 55, (83 + 43) * 60)
 
 
-def repeating(patches: PatchSet, seeds: int, say: Say) -> list[Figure]:
+def repeating(patches: PatchSet, seeds: int, say: Say) -> list[Row]:
     """Tiles that repeat, checked as 3 x 3 tiles and three laps."""
     figures = []
     for tile_of in REPEATING:
@@ -249,9 +258,8 @@ def repeating(patches: PatchSet, seeds: int, say: Say) -> list[Figure]:
         for seam in ("seam in time", "border"):
             worst = [run.seams[seam] for run in made if seam in run.seams]
             if worst:
-                figures.append(Figure("repeating", f"{name}: {seam}, worst gap or overlap", max(worst), "m"))
-        secs, good = median(run.outcome.solve_secs for run in made), sum(run.ok for run in made)
-        say(f"tiling: repeating {name}: {secs:.2f} s, {good} of {seeds} perfect and checked")
+                figures.append(figure("repeating", f"{name}: {seam}, worst gap or overlap", max(worst), "m"))
+        say(spread(f"repeating {name}", made))
     return figures
 
 
@@ -259,7 +267,7 @@ PLANES = (3, 6, 10)
 """Sides of planes of tiles of 10 x 10 m, in tiles."""
 
 
-def planes(patches: PatchSet, say: Say, characters: int = 40) -> list[Figure]:
+def planes(patches: PatchSet, say: Say, characters: int = 40) -> list[Row]:
     """Wang tiles: what a plane costs as it grows; no tile is worked out twice, all others cost only their bodies."""
     figures = []
     for tiles in PLANES:
@@ -272,10 +280,10 @@ def planes(patches: PatchSet, say: Say, characters: int = 40) -> list[Figure]:
         ok = outcome.status == "perfect" and check.check(outcome.crowd).ok
         name = f"{side} x {side} m"
         figures += [
-            Figure("wang", f"{name}: characters", len(outcome.crowd)),
-            Figure("wang", f"{name}: solve time", outcome.solve_secs, "s"),
-            Figure("wang", f"{name}: per tile", outcome.solve_secs / tiles**2, "s"),
-            Figure("wang", f"{name}: perfect and checked", float(ok)),
+            figure("wang", f"{name}: characters", len(outcome.crowd)),
+            figure("wang", f"{name}: seconds", outcome.solve_secs, "s"),
+            figure("wang", f"{name}: per tile", outcome.solve_secs / tiles**2, "s"),
+            figure("wang", f"{name}: perfect and checked", float(ok)),
         ]
         say(f"tiling: wang {name}: {outcome.solve_secs:.1f} s, {'perfect and checked' if ok else outcome.reason}")
     return figures

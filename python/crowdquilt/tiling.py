@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from crowdquilt._core import CrowdquiltError, Kind, Outcome, PatchSet, Progress, Scene, tile
+from crowdquilt._core import Checkpoint, CrowdquiltError, Kind, Outcome, PatchSet, Progress, Scene, review, tile
 
-__all__ = ["Outcome", "Progress", "Scene", "prefer", "tile"]
+__all__ = ["Checkpoint", "Outcome", "Progress", "Scene", "prefer", "review", "tile"]
 
 Array = np.ndarray
 Sigmas = tuple[float, float, float, float]

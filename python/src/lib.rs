@@ -49,7 +49,7 @@ mod _core {
     #[pymodule_export]
     use super::stage::{Crowd, Fragment, Obstacle, Prop};
     #[pymodule_export]
-    use super::tiling::{Outcome, Progress, Scene, tile};
+    use super::tiling::{Checkpoint, Outcome, Progress, Scene, review, tile};
     #[pymodule_export]
     use super::world::{
         Pattern, World, WorldScene, build_world, check_world, measure_patches, measure_poses, measure_replay,

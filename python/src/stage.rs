@@ -177,6 +177,18 @@ type People<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray3<f32>>);
 
 #[pymethods]
 impl Crowd {
+    /// Names of the teams.
+    #[getter]
+    fn teams(&self) -> Vec<String> {
+        self.0.domain.teams.clone()
+    }
+
+    /// Everybody's team, an index into `teams`; None of those who are of none.
+    #[getter]
+    fn team_of(&self) -> Vec<Option<u32>> {
+        self.0.characters.iter().map(|c| c.team).collect()
+    }
+
     /// Directions in which the crowd repeats: some of `x`, `z`, `t`.
     #[getter]
     fn periodic(&self) -> Vec<&'static str> {

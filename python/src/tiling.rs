@@ -119,6 +119,12 @@ impl Scene {
         self.0.characters
     }
 
+    /// How many people are wished for, with those of teams and those who come in at sources.
+    #[getter]
+    fn people(&self) -> usize {
+        self.0.people()
+    }
+
     /// Which share of the people's time is wished for in patches of two or more.
     #[getter]
     fn interaction(&self) -> f32 {
@@ -164,7 +170,8 @@ fn progress(p: &core::Progress) -> Progress {
 /// The best tiling of a run.
 ///
 /// `status` is "perfect" (no dangling, no interpenetration, all wishes met), "short" (a wish is unmet) or "imperfect"
-/// (danglings or interpenetrations are left); `reason` says why it is not perfect.
+/// (danglings or interpenetrations are left); `reason` says why it is not perfect. `unkept` says why the last checkpoint
+/// could not be written, if so.
 #[pyclass(frozen, get_all, module = "crowdquilt")]
 pub struct Outcome {
     crowd: Py<Crowd>,
@@ -173,6 +180,7 @@ pub struct Outcome {
     danglings: usize,
     interpenetrations: usize,
     solve_secs: f64,
+    unkept: Option<String>,
 }
 
 #[pymethods]
@@ -182,12 +190,16 @@ impl Outcome {
     }
 }
 
-fn outcome(py: Python<'_>, found: core::Outcome) -> PyResult<Outcome> {
-    let (status, reason) = match found.status {
+fn told(status: core::Status) -> (&'static str, String) {
+    match status {
         core::Status::Perfect => ("perfect", String::new()),
         core::Status::Short(reason) => ("short", reason),
         core::Status::Imperfect(reason) => ("imperfect", reason),
-    };
+    }
+}
+
+fn outcome(py: Python<'_>, found: core::Outcome) -> PyResult<Outcome> {
+    let (status, reason) = told(found.status);
     Ok(Outcome {
         crowd: Py::new(py, Crowd(Arc::new(found.crowd)))?,
         status,
@@ -195,18 +207,104 @@ fn outcome(py: Python<'_>, found: core::Outcome) -> PyResult<Outcome> {
         danglings: found.danglings,
         interpenetrations: found.interpenetrations,
         solve_secs: found.solve_secs,
+        unkept: found.unkept,
     })
+}
+
+/// A tiling as it is kept between runs (`*.tiling`). Its scene may be given other wishes before a run goes on.
+#[pyclass(frozen, module = "crowdquilt")]
+pub struct Checkpoint(core::Checkpoint);
+
+#[pymethods]
+impl Checkpoint {
+    /// Read a checkpoint.
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        run(py, || core::Checkpoint::load(&path)).map(Self)
+    }
+
+    /// What is tiled.
+    #[getter]
+    fn scene(&self) -> Scene {
+        Scene(self.0.scene.clone())
+    }
+
+    /// The seed of the run.
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.0.seed
+    }
+
+    /// What the patch set is called, if that was told.
+    #[getter]
+    fn patches(&self) -> Option<&str> {
+        self.0.patches.as_deref()
+    }
+
+    /// People who are there.
+    #[getter]
+    fn characters(&self) -> usize {
+        self.0.reached.people
+    }
+
+    /// Placed patches.
+    #[getter]
+    fn instances(&self) -> usize {
+        self.0.reached.patches
+    }
+
+    /// Share of the people's time in patches of two or more.
+    #[getter]
+    fn multi_person_share(&self) -> f32 {
+        self.0.reached.multi_person_share
+    }
+
+    /// Seconds of search so far, of all runs.
+    #[getter]
+    fn solve_secs(&self) -> f64 {
+        self.0.reached.secs
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.reached.people
+    }
+
+    fn __repr__(&self) -> String {
+        let r = &self.0.reached;
+        format!("Checkpoint(characters={}, instances={}, solve_secs={:.1})", r.people, r.patches, r.secs)
+    }
+}
+
+/// Test the final bodies and the wishes of a checkpoint without going on: its status and reason (see `Outcome`), and how
+/// many faults its final bodies have. `scene` is the checkpoint's, with other wishes if need be.
+#[pyfunction]
+pub fn review(
+    py: Python<'_>,
+    checkpoint: &Checkpoint,
+    scene: &Scene,
+    patches: &PatchSet,
+) -> PyResult<(&'static str, String, usize)> {
+    let found = run(py, || core::review(&checkpoint.0, &scene.0, &patches.0))?;
+    let (status, reason) = told(found.status);
+    Ok((status, reason, found.faults))
 }
 
 /// Tile `scene` with the kinds of `patches`. The same seed gives the same crowd for any number of threads, unless
 /// time runs out.
 ///
-/// `method` is "engine" (the project's) or "paper" (Algorithms 1 and 2 as published); `time` is the longest search in
-/// seconds; `threads` are as many as the machine has cores unless given. `progress(p)` is called about twenty times a
+/// `method` is "engine" (the project's) or "paper" (Algorithms 1 and 2 as published); `time` is the longest that search
+/// and final bodies may take, in seconds; `threads` are as many as the machine has cores unless given. `progress(p)` is called about twenty times a
 /// second and stops the search by returning False. Ctrl-C stops it too: the KeyboardInterrupt that is raised has the
 /// best tiling so far as its attribute `outcome`.
+///
+/// The engine writes a checkpoint to `checkpoint` every `checkpoint_every` seconds and when its search ends, with the
+/// name of the patch set if `patches_name` tells it. A run that was killed goes on if its checkpoint is given as
+/// `resume`, with the scene of the checkpoint or one of other wishes.
 #[pyfunction]
-#[pyo3(signature = (scene, patches, *, seed=1, method="engine", time=60.0, threads=None, progress=None))]
+#[pyo3(signature = (
+    scene, patches, *, seed=1, method="engine", time=60.0, threads=None, progress=None, resume=None, checkpoint=None,
+    checkpoint_every=10.0, patches_name=None,
+))]
 #[allow(clippy::too_many_arguments)]
 pub fn tile(
     py: Python<'_>,
@@ -217,6 +315,10 @@ pub fn tile(
     time: f64,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
+    resume: Option<&Checkpoint>,
+    checkpoint: Option<PathBuf>,
+    checkpoint_every: f64,
+    patches_name: Option<String>,
 ) -> PyResult<Outcome> {
     let method = match method {
         "engine" => core::Method::Engine,
@@ -228,12 +330,21 @@ pub fn tile(
     if !(time > 0.0 && time <= 1e6) {
         return Err(PyValueError::new_err(format!("expected a time of more than 0 seconds, found {time}")));
     }
+    if checkpoint_every.is_nan() || checkpoint_every < 0.0 {
+        return Err(PyValueError::new_err(format!("expected seconds between checkpoints, found {checkpoint_every}")));
+    }
+    let keep = checkpoint.as_deref().map(|path| core::Keep {
+        path,
+        every_secs: checkpoint_every,
+        patches: patches_name.as_deref(),
+    });
+    let session = core::Session { from: resume.map(|kept| &kept.0), keep };
     let options = core::Options { method, seed, time_secs: time };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
     let pool = pool.map_err(|e| CrowdquiltError::new_err(format!("threads: {e}")))?;
     let show = |py: Python<'_>, p: core::Progress| Ok(Py::new(py, self::progress(&p))?.into_any());
     let solve = |report: &(dyn Fn(core::Progress) -> bool + Sync)| {
-        pool.install(|| core::tile(&scene.0, &patches.0, &options, &mut |p| report(*p)))
+        pool.install(|| core::tile_in(session, &scene.0, &patches.0, &options, &mut |p| report(*p)))
     };
     let (found, interrupt) = watched(py, progress, show, solve);
     let found = outcome(py, found?)?;

@@ -31,21 +31,23 @@ def test_rows_are_measured_on_the_scene(monkeypatch: pytest.MonkeyPatch) -> None
     lines: list[str] = []
     rows = {row.row: row for row in bench.AREAS["tiling"](2, lines.append)}
     assert len(lines) == 5
-    people = rows["static-173: characters, fewest"]
+    people = rows["static-173: characters, least"]
     assert people.ours == 5 and people.ratio == pytest.approx(5 / 16)
-    solve = rows["static-173: solve time, median"]
-    assert 0 < solve.ours <= rows["static-173: solve time, slowest"].ours
+    solve = rows["static-173: seconds, median"]
+    assert 0 < solve.ours <= rows["static-173: seconds, most"].ours
+    assert rows["static-173: seconds, least"].ours <= solve.ours
+    assert lines[0].startswith("tiling: static-173: perfect 2/2, ") and "5/5/5 people" in lines[0]
     assert solve.reference == 18 and solve.unit == "s"
     assert solve.ratio == pytest.approx(solve.ours / 18)
     danglings = rows["static-173: danglings, all runs"]
     assert danglings.reference == 0 and danglings.ratio is None
-    assert rows["static-173: Algorithms 1 and 2 here: solve time, median"].ours > 0
-    assert rows["repeating: x, t: perfect and checked, share"].ours == 1
+    assert rows["static-173: Algorithms 1 and 2 here: seconds, median"].ours > 0
+    assert rows["repeating: x, t: perfect and checked, of 2 seeds"].ours == 2
     assert rows["repeating: x, t: seam in time, worst gap or overlap"].ours < 0.01
     assert rows["repeating: x, t: border, worst gap or overlap"].ours < 0.01
     assert rows["wang: 20 x 20 m: characters"].ours == 160
     assert rows["wang: 20 x 20 m: perfect and checked"].ours == 1
-    assert rows["wang: 20 x 20 m: per tile"].ours == pytest.approx(rows["wang: 20 x 20 m: solve time"].ours / 4)
+    assert rows["wang: 20 x 20 m: per tile"].ours == pytest.approx(rows["wang: 20 x 20 m: seconds"].ours / 4)
     assert rows["hopping: bumps, fewest"].ours > 5
     assert rows["area-growth: 5 x 5 m, per character"].ours > 0
     assert rows["area-growth: 5 x 5 m, one thread / two"].ours > 0

@@ -168,6 +168,7 @@ mod tests {
             sinks: vec![],
             last_frame: 0,
             periodic: crate::geom::Periodic::default(),
+            teams: vec![],
         };
         assert!(block.depth_in_walls(&domain([(0.0, 0.0), (2.0, -0.01), (2.0, 0.01)]), 0.0) > 0.05);
         assert_eq!(block.depth_in_walls(&domain([(0.4, 0.0), (2.0, -0.01), (2.0, 0.01)]), 0.0), 0.0);

@@ -12,7 +12,7 @@ use gltf_json::{Accessor, Index, Material, Mesh, Root, Value};
 
 use super::actor::{Bone, Dress};
 use super::buffer::Stream;
-use super::look::{Look, Region, look};
+use super::look::{Look, Region, look_in_team};
 use super::mannequin::{mannequin, rest};
 use crate::motion::{Build, JOINT_COUNT};
 
@@ -35,22 +35,34 @@ pub(super) struct Wardrobe {
     meshes: BTreeMap<(usize, Look), Index<Mesh>>,
 }
 
+/// What decides how somebody looks.
+#[derive(Clone, Copy)]
+pub(super) struct Number {
+    /// The person.
+    pub person: usize,
+    /// Index of the build.
+    pub build: usize,
+    /// Index of the team, if of one.
+    pub team: Option<u32>,
+}
+
+impl Number {
+    fn look(&self) -> Look {
+        look_in_team(self.person, self.team)
+    }
+}
+
 impl Wardrobe {
     /// Writes what people of `builds` with the numbers `people` need.
-    pub(super) fn new(
-        root: &mut Root,
-        binary: &mut Vec<u8>,
-        builds: &[impl AsRef<Build>],
-        people: &[(usize, usize)],
-    ) -> Self {
+    pub(super) fn new(root: &mut Root, binary: &mut Vec<u8>, builds: &[impl AsRef<Build>], people: &[Number]) -> Self {
         let builds: Vec<&Build> = builds.iter().map(AsRef::as_ref).collect();
         let attributes = attributes(root, binary, &builds);
         let binds = binds(root, binary, &builds);
         let bones = builds.iter().map(|b| bones(b)).collect();
-        let cuts = cuts(root, binary, people.iter().map(|&(person, _)| look(person)));
+        let cuts = cuts(root, binary, people.iter().map(Number::look));
         let mut wardrobe = Self { attributes, binds, bones, cuts, meshes: BTreeMap::new() };
-        for &(person, build) in people {
-            wardrobe.sew(root, build, look(person));
+        for number in people {
+            wardrobe.sew(root, number.build, number.look());
         }
         wardrobe
     }
@@ -61,8 +73,8 @@ impl Wardrobe {
     }
 
     /// Mesh and skin of a person.
-    pub(super) fn dress(&self, person: usize, build: usize) -> Dress {
-        let (mesh, bind) = (self.meshes[&(build, look(person))], self.binds[build]);
+    pub(super) fn dress(&self, number: &Number) -> Dress {
+        let (mesh, bind) = (self.meshes[&(number.build, number.look())], self.binds[number.build]);
         Dress { mesh, bind: Some(bind), joints: (0..JOINT_COUNT).collect(), weights: None }
     }
 

@@ -12,7 +12,7 @@ use gltf_json::{Asset, Index, Root, Scene};
 
 use super::actor::{Keys, Writer};
 use super::avatar::{Avatar, Graft};
-use super::body::Wardrobe;
+use super::body::{Number, Wardrobe};
 use super::boxes;
 use super::buffer::assemble;
 use super::look::dealt;
@@ -60,13 +60,14 @@ const AVATAR_SALT: u32 = 20;
 
 fn mannequins(crowd: &Crowd, people: &[(usize, &Character)], mut root: Root, mut binary: Vec<u8>) -> Vec<u8> {
     let (builds, own) = crowd.builds();
-    let numbers: Vec<(usize, usize)> = people.iter().map(|&(person, _)| (person, own[person])).collect();
+    let number = |&(person, c): &(usize, &Character)| Number { person, build: own[person], team: c.team };
+    let numbers: Vec<Number> = people.iter().map(number).collect();
     let wardrobe = Wardrobe::new(&mut root, &mut binary, &builds, &numbers);
     let meshes = boxes::meshes(&mut root, &mut binary, crowd);
     let blocks = obstacles::meshes(&mut root, &mut binary, crowd);
     let mut writer = Writer::new(root, crowd.domain.last_frame);
-    for &(person, character) in people {
-        let (bones, dress) = (wardrobe.bones(own[person]), wardrobe.dress(person, own[person]));
+    for (&(person, character), number) in people.iter().zip(&numbers) {
+        let (bones, dress) = (wardrobe.bones(number.build), wardrobe.dress(number));
         writer.person(person, character, bones, &[dress], &keys(character));
     }
     boxes::write(&mut writer, crowd, &meshes);

@@ -69,6 +69,19 @@ const TROUSERS: [u32; 10] =
 const SHOES: [u32; 6] = [0xf0ede6, 0x3a2f29, 0x23252a, 0x8a5a3a, 0xb3b6bb, 0x7a3b36];
 const SOLE: [u32; 3] = [0xdedad2, 0x2a2725, 0xe9e6df];
 
+/// Shirts of teams.
+const TEAM: [u32; 6] = [0x2456a6, 0xd4572a, 0x2f8f5b, 0xe0b12f, 0x8a3fa0, 0x1f9aa8];
+
+/// What a person looks like who may be of a team: then the shirt is the team's, with long sleeves.
+pub fn look_in_team(person: usize, team: Option<u32>) -> Look {
+    let mut look = look(person);
+    if let Some(team) = team {
+        let shirt = Some(TEAM[team as usize % TEAM.len()]);
+        (look[Region::Shirt as usize], look[Region::Sleeve as usize]) = (shirt, shirt);
+    }
+    look
+}
+
 /// What a person looks like; the same for the same number.
 pub fn look(person: usize) -> Look {
     let pick = |list: &[u32], salt| Some(list[dealt(person, salt, list.len())]);
@@ -134,7 +147,8 @@ mod tests {
     #[test]
     fn the_studio_deals_the_same_looks() {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("studio/test/looks.json");
-        let looks: Vec<Look> = (0..40).map(look).collect();
+        let in_team = (0..8).map(|t| look_in_team(t, Some(t as u32)));
+        let looks: Vec<Look> = (0..40).map(|person| look_in_team(person, None)).chain(in_team).collect();
         if std::env::var_os("WRITE_LOOKS").is_some() {
             std::fs::write(&path, format!("{}\n", serde_json::to_string(&looks).unwrap())).unwrap();
         }

@@ -29,6 +29,9 @@ pub struct DomainInfo {
     /// People's places go on as they are where they cross a border.
     #[serde(default, skip_serializing_if = "Periodic::none")]
     pub periodic: Periodic,
+    /// Names of the teams.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub teams: Vec<String>,
 }
 
 impl DomainInfo {
@@ -70,6 +73,8 @@ pub struct Character {
     pub begin: u32,
     /// Bones and flesh: what the rotations turn.
     pub build: Arc<Build>,
+    /// Index of the team, if of one.
+    pub team: Option<u32>,
     /// The fragments in order; each begins where the one before ends.
     pub fragments: Vec<FragmentUse>,
     /// Hips position per frame.

@@ -7,7 +7,7 @@
 //! z per joint, which stand in for the skeleton's; `flesh`: how a body's surface around each joint differs from the
 //! canonical body's: scale x, y, z about the joint in the rest pose, shift forward) and `characters`: each has `begin`
 //! (first frame), `frames`, `build` (index), and `fragments` (instance, role, begin, end, `samples` = number of path
-//! samples). Files without builds are of people with the canonical one. `props` are boxes: name, `size` (width between
+//! samples), and `team` (index of one of `domain.teams`, names) if the person is of one. Files without builds are of people with the canonical one. `props` are boxes: name, `size` (width between
 //! the hands, height, depth), `begin` (first frame), `frames`, and `holds` (character, begin, end: frames over which
 //! somebody has it in the hands; otherwise it rests).
 //!
@@ -74,6 +74,8 @@ struct CharacterHeader {
     frames: u32,
     #[serde(default)]
     build: u32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    team: Option<u32>,
     fragments: Vec<FragmentHeader>,
 }
 
@@ -187,6 +189,10 @@ impl Crowd {
             }
         }
         for (i, character) in self.characters.iter().enumerate() {
+            if let Some(team) = character.team.filter(|&t| t as usize >= self.domain.teams.len()) {
+                let problem = format!("expected a team below {}, found {team}", self.domain.teams.len());
+                return bad(format!("character {i}"), problem);
+            }
             for (k, f) in character.fragments.iter().enumerate() {
                 let place = || format!("character {i}, fragment {k}");
                 let kind = self.instances.get(f.instance as usize).map(|n| &self.set.kinds[n.kind as usize]);
@@ -245,7 +251,7 @@ fn character_header(c: &Character, build: u32) -> CharacterHeader {
         end: f.end,
         samples: f.points.len() as u32,
     });
-    CharacterHeader { begin: c.begin, frames: c.frames() as u32, build, fragments: fragments.collect() }
+    CharacterHeader { begin: c.begin, frames: c.frames() as u32, build, team: c.team, fragments: fragments.collect() }
 }
 
 fn prop_header(prop: &Prop) -> PropHeader {
@@ -313,6 +319,7 @@ impl Arrays {
         Ok(Character {
             begin: header.begin,
             build,
+            team: header.team,
             fragments,
             root: root.chunks_exact(3).map(Vec3::from_slice).collect(),
             rotations: rotations.ok_or_else(beyond)?.chunks_exact(4).map(unpack_rotation).collect::<Vec<Quat>>(),

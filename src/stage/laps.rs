@@ -213,6 +213,7 @@ fn cut(c: &Character, from: u32, to: u32) -> Option<Character> {
     Some(Character {
         begin: first - from,
         build: c.build.clone(),
+        team: c.team,
         fragments: seen.map(moved).collect(),
         root: c.root[frames.clone()].to_vec(),
         rotations: c.rotations[frames.start * JOINT_COUNT..frames.end * JOINT_COUNT].to_vec(),

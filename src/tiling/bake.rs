@@ -135,6 +135,7 @@ pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, played: Performance
         sinks: scene.sinks.iter().map(|s| s.gate.clone()).collect(),
         last_frame: scene.last_frame() as u32,
         periodic: scene.periodic,
+        teams: scene.teams.iter().map(|t| t.name.clone()).collect(),
     };
     Crowd { seed, domain, set: chains.library.set.clone(), instances, characters, props }
 }
@@ -145,7 +146,7 @@ fn character(chains: Chains, person: usize, build: Arc<Build>, body: Body) -> Ch
     let Body { begin, root, rotations, .. } = last_lap_but_one(chains.domain, body, &mut fragments);
     // As a file keeps them: what is checked in memory is what is loaded later.
     let rotations = rotations.into_iter().map(filed_rotation).collect();
-    Character { begin, build, fragments, root, rotations }
+    Character { begin, build, team: None, fragments, root, rotations }
 }
 
 /// Numbers instances in the order in which people meet them; where time comes round one is another in every lap.

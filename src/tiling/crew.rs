@@ -37,6 +37,16 @@ impl<'a> Crew<'a> {
         Self { tracks, batch, seed, desks: Mutex::default(), drawn: 0 }
     }
 
+    /// Changes worked out so far.
+    pub fn drawn(&self) -> u64 {
+        self.drawn
+    }
+
+    /// The same, so many changes having been worked out by an earlier run.
+    pub fn going_on(self, drawn: u64) -> Self {
+        Self { drawn, ..self }
+    }
+
     /// Works `count` changes out and makes those that are found and wanted; for each whether it was made.
     pub fn work(
         &mut self,

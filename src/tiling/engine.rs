@@ -11,6 +11,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::bake::{Chains, bake};
 use super::bridge::Taste;
+use super::checkpoint::{About, Agenda, Checkpoint, Keep, Keeper, Stage, thaw};
 use super::crew::Crew;
 use super::demands::admitted;
 use super::domain::Domain;
@@ -22,12 +23,14 @@ use super::keyframe::keyframes;
 use super::library::Library;
 use super::mend::{dissolve, mend};
 use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
+use super::pace::Pace;
 use super::passage::Passages;
 use super::plan::Plan;
 use super::rehearsal::Rehearsal;
 use super::seed::{seed_person, stand_beside};
-use super::source::{arrivals, let_in};
-use super::team::line_up;
+use super::session::{Session, first_agenda, further_agenda};
+use super::source::let_in;
+use super::team::{line_up, team_of};
 use super::tracks::{Tracks, Window};
 use super::wang::{Crosser, Gap, lead_across};
 use super::{Scene, paper, wang};
@@ -100,6 +103,8 @@ const TILE_REFILLS: usize = 1;
 const TILE_COMPANY: f32 = 0.85;
 /// Rounds of mending.
 const MEND_ROUNDS: usize = 30;
+/// How fast a long step of a run is forgotten when others are shorter.
+const STEPS_FADE: f64 = 0.9;
 /// Time between two reports of progress.
 const REPORT_EVERY: Duration = Duration::from_millis(50);
 
@@ -117,14 +122,44 @@ pub fn tile(
     options: &Options,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Outcome> {
+    tile_in(Session::default(), scene, set, options, progress)
+}
+
+/// The same from a checkpoint on, or with checkpoints written. From the same checkpoint on the same seed gives the same
+/// crowd, which is not the one of a run that was never interrupted.
+///
+/// # Errors
+/// As [`tile`]; the checkpoint is not a tiling of the scene with the set, or the method has none.
+pub fn tile_in(
+    session: Session,
+    scene: &Scene,
+    set: &PatchSet,
+    options: &Options,
+    progress: &mut dyn FnMut(&Progress) -> bool,
+) -> Result<Outcome> {
+    if let Some(kept) = session.from {
+        kept.expect_set(set)?;
+    }
+    let about = |keep: Keep| About::new(scene, set, options.seed, keep);
+    let keeper = Keeper::new(session.keep, about);
     let set = &*admitted(scene, set, options.method)?;
     check_set(set)?;
     if let Some(wang) = scene.wang {
+        if session.from.is_some() || session.keep.is_some() {
+            return Err(Error::invalid(
+                "checkpoint",
+                "wang",
+                "expected a scene without tiles: they are laid when all are done",
+            ));
+        }
         return wang::tile(scene, wang, set, options, progress);
     }
     let domain = Domain::new(scene)?;
     match options.method {
-        Method::Engine => Ok(engine(scene, set, &domain, options, progress)),
+        Method::Engine => engine(session.from, keeper, scene, set, &domain, options, progress),
+        Method::Paper if session.from.is_some() || session.keep.is_some() => {
+            Err(Error::invalid("checkpoint", "method", "expected the engine: the paper's algorithms keep none"))
+        }
         Method::Paper => Ok(paper::tile(scene, set, &domain, options, progress)),
     }
 }
@@ -162,6 +197,11 @@ pub(super) struct Clock<'a> {
     start: Instant,
     last_report: Instant,
     limit: Duration,
+    /// Seconds of it that are to be left for what comes later.
+    reserve: f64,
+    /// When it was asked last, and how long a step takes from one time to the next, seconds.
+    asked: Instant,
+    step: f64,
     stopped: bool,
     progress: &'a mut dyn FnMut(&Progress) -> bool,
 }
@@ -173,6 +213,9 @@ impl<'a> Clock<'a> {
             start: now,
             last_report: now,
             limit: Duration::from_secs_f64(limit_secs.max(0.0)),
+            reserve: 0.0,
+            asked: now,
+            step: 0.0,
             stopped: false,
             progress,
         }
@@ -181,12 +224,24 @@ impl<'a> Clock<'a> {
     /// False once time is up or the caller has had enough.
     pub(super) fn goes_on(&mut self, state: impl FnOnce() -> Progress) -> bool {
         let now = Instant::now();
+        self.step = (now - self.asked).as_secs_f64().max(self.step * STEPS_FADE);
+        self.asked = now;
         if !self.stopped && now - self.last_report >= REPORT_EVERY {
             self.last_report = now;
             let secs = self.secs();
             self.stopped = !(self.progress)(&Progress { secs, ..state() });
         }
-        !self.stopped && now - self.start < self.limit
+        !self.is_over()
+    }
+
+    /// True once time is up or the caller has had enough.
+    pub(super) fn is_over(&self) -> bool {
+        self.stopped || self.secs() + self.step + self.reserve >= self.limit.as_secs_f64()
+    }
+
+    /// Part of the time that has gone.
+    fn gone(&self) -> f64 {
+        self.secs() / self.limit.as_secs_f64().max(1e-9)
     }
 
     pub(super) fn secs(&self) -> f64 {
@@ -195,30 +250,39 @@ impl<'a> Clock<'a> {
 }
 
 fn engine(
+    from: Option<&Checkpoint>,
+    keeper: Keeper,
     scene: &Scene,
     set: &PatchSet,
     domain: &Domain,
     options: &Options,
     progress: &mut dyn FnMut(&Progress) -> bool,
-) -> Outcome {
+) -> Result<Outcome> {
     let clock = Clock::new(options.time_secs, progress);
     let library = Library::new(set, scene.limits).preferring(&scene.preference).placing(&scene.placed).parting(scene);
-    let passages = Passages::new(&library);
-    let mut engine = Engine::new(scene, &passages, Tracks::new(&library, domain), options.seed, clock);
-    let placed = engine.keyframes();
-    engine.line_up();
-    engine.let_in();
-    engine.hurdle();
-    engine.populate();
-    let Rehearsal { played, faults, .. } = engine.finish(REFILLS);
-    let Engine { mut crew, clock, .. } = engine;
-    crew.tracks.occupancy.close();
-    let status = match placed {
-        true => status(crew.tracks.chains(), scene, faults.len()),
-        false => Status::Imperfect("no ways were found to and from the placed patches".into()),
+    let (tracks, agenda) = match from {
+        Some(kept) => (thaw(kept, scene, &library, domain)?, further_agenda(kept, scene)),
+        None => (Tracks::new(&library, domain), first_agenda(scene)),
     };
-    let crowd = bake(crew.tracks.chains(), scene, options.seed, played);
-    Outcome { crowd, status, danglings: 0, interpenetrations: faults.len(), solve_secs: clock.secs() }
+    let crew = Crew::new(tracks, scene.region.area(), options.seed).going_on(agenda.drawn);
+    let passages = Passages::new(&library);
+    // Whoever goes on does not wish for the same gatherings again.
+    let mut engine = Engine::new(scene, &passages, crew, options.seed.wrapping_add(agenda.drawn), clock);
+    engine.most += agenda.admitted;
+    (engine.agenda, engine.keeper) = (agenda, keeper);
+    engine.before = from.map_or(0.0, |kept| kept.reached.secs);
+    engine.search();
+    let Rehearsal { played, faults, .. } = engine.finish(REFILLS);
+    engine.keep();
+    let Engine { mut crew, clock, agenda, keeper, .. } = engine;
+    crew.tracks.occupancy.close();
+    let status = status(crew.tracks.chains(), scene, faults.len(), agenda.placed);
+    let mut crowd = bake(crew.tracks.chains(), scene, options.seed, played);
+    for (person, character) in crowd.characters.iter_mut().enumerate() {
+        character.team = team_of(&crew.tracks, person).map(|team| team as u32);
+    }
+    let (interpenetrations, unkept) = (faults.len(), keeper.into_problem());
+    Ok(Outcome { crowd, status, danglings: 0, interpenetrations, solve_secs: clock.secs(), unkept })
 }
 
 /// Fills a tile of a plane: some of `residents` meet while it is empty, then those who cross its borders are led there and
@@ -234,7 +298,8 @@ pub(super) fn fill<'a>(
     (seed, picky): (u64, bool),
     clock: Clock<'a>,
 ) -> std::result::Result<Tracks<'a>, Vec<Gap>> {
-    let mut engine = Engine::new(scene, passages, tracks, seed, clock);
+    let crew = Crew::new(tracks, scene.region.area(), seed);
+    let mut engine = Engine::new(scene, passages, crew, seed, clock);
     // Half the life of who crosses a border is here, or some more.
     (engine.most, engine.visitors, engine.patience) = (residents, crossers.len() * 5 / 8, TILE_PATIENCE);
     engine.gather();
@@ -259,7 +324,8 @@ pub(super) fn mend_laid<'a>(
     seed: u64,
     clock: Clock<'a>,
 ) -> (Tracks<'a>, Rehearsal) {
-    let mut engine = Engine::new(scene, passages, tracks, seed, clock);
+    let crew = Crew::new(tracks, scene.region.area(), seed);
+    let mut engine = Engine::new(scene, passages, crew, seed, clock);
     engine.mend(&mut rehearsal);
     (engine.crew.tracks, rehearsal)
 }
@@ -301,32 +367,32 @@ struct Engine<'a> {
     visitors: usize,
     /// Failed tries per person in a row after which no more patches of several people are wished for.
     patience: usize,
+    agenda: Agenda,
+    keeper: Keeper<'a>,
+    /// Seconds that earlier runs have taken.
+    before: f64,
+    pace: Pace,
 }
 
 impl<'a> Engine<'a> {
-    fn new(scene: &'a Scene, passages: &'a Passages<'a>, tracks: Tracks<'a>, seed: u64, clock: Clock<'a>) -> Self {
-        let (library, horizon) = (tracks.library, tracks.domain.horizon);
-        let crew = Crew::new(tracks, scene.region.area(), seed);
-        let taste = Taste { calm: calm(scene), expansions: library.steps(horizon) * EXPANSIONS_PER_STEP };
-        let plan = Plan::new(library, passages, horizon, seed);
+    /// From the beginning, without checkpoints.
+    fn new(scene: &'a Scene, passages: &'a Passages<'a>, crew: Crew<'a>, seed: u64, clock: Clock<'a>) -> Self {
+        let (library, horizon) = (crew.tracks.library, crew.tracks.domain.horizon);
         Self {
             scene,
-            crew,
             passages,
-            plan,
-            taste,
+            plan: Plan::new(library, passages, horizon, seed),
+            taste: Taste { calm: calm(scene), expansions: library.steps(horizon) * EXPANSIONS_PER_STEP },
+            crew,
             clock,
             most: scene.characters,
             visitors: 0,
             patience: ENRICH_PATIENCE,
+            agenda: Agenda::default(),
+            keeper: Keeper::none(),
+            before: 0.0,
+            pace: Pace::default(),
         }
-    }
-
-    /// Adds people who meet, then those who come alone, and patches of several people where company is short.
-    fn populate(&mut self) {
-        self.gather();
-        self.stand();
-        self.add_the_others();
     }
 
     /// Adds people who come alone, and patches of several people where company is short.
@@ -347,9 +413,49 @@ impl<'a> Engine<'a> {
         if stuck.is_empty() { Ok(()) } else { Err(stuck) }
     }
 
+    /// All that comes before the final bodies are tested.
+    fn search(&mut self) {
+        self.at(Stage::Place, Self::keyframes);
+        self.at(Stage::LineUp, Self::line_up);
+        self.at(Stage::LetIn, Self::let_in);
+        self.at(Stage::Hurdle, Self::hurdle);
+        self.at(Stage::Gather, Self::gather);
+        self.at(Stage::Stand, Self::stand);
+        self.at(Stage::Acquaint, |engine| engine.enrich(FIRST_PATIENCE));
+        self.at(Stage::Seed, Self::seed);
+        self.at(Stage::Enrich, |engine| engine.enrich(engine.patience));
+        self.at(Stage::Mend, |_| ());
+        self.keep();
+    }
+
+    /// Works at a stage, unless an earlier run is through with it or time is up.
+    fn at(&mut self, stage: Stage, work: impl FnOnce(&mut Self)) {
+        if self.agenda.stage <= stage && !self.clock.is_over() {
+            self.agenda.stage = stage;
+            work(self);
+        }
+    }
+
     fn goes_on(&mut self, phase: Phase) -> bool {
+        if self.keeper.is_due() {
+            self.keep();
+        }
         let tracks = &self.crew.tracks;
+        if !self.clock.is_over() && self.pace.is_wanted(self.clock.gone(), tracks.tracks.len()) {
+            self.pace.measure(tracks.chains(), self.crew.seed);
+        }
+        let people = tracks.tracks.len();
+        let mending = phase == Phase::Mend;
+        self.clock.reserve = if mending { self.pace.baking(people) } else { self.pace.ending(people) };
         self.clock.goes_on(|| state(tracks, phase))
+    }
+
+    /// Writes a checkpoint, if that is wanted.
+    fn keep(&mut self) {
+        let Crew { tracks, .. } = &self.crew;
+        let (drawn, next_instance) = (self.crew.drawn(), tracks.next_instance());
+        self.agenda = Agenda { drawn, next_instance, ..std::mem::take(&mut self.agenda) };
+        self.keeper.write(tracks, &self.agenda, self.before + self.clock.secs());
     }
 
     /// Ticks in patches of several people that are aimed at when everybody is there.
@@ -365,45 +471,54 @@ impl<'a> Engine<'a> {
 
     /// Puts the teams in their places.
     fn line_up(&mut self) {
-        for (team, count) in self.scene.teams.iter().map(|t| t.characters).enumerate() {
-            let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
-            self.admit(vec![team; count], &|draft, team, rng| line_up(draft, team, taste, rng));
+        let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
+        for team in 0..self.scene.teams.len() {
+            let (people, others): (Vec<usize>, Vec<usize>) = self.agenda.lining_up.iter().partition(|&&t| t == team);
+            let waiting = |agenda: &mut Agenda, left: Vec<usize>| agenda.lining_up = [&others[..], &left].concat();
+            self.admit(people, waiting, &|draft, team, rng| line_up(draft, team, taste, rng));
         }
     }
 
     /// Lets people in at the sources.
     fn let_in(&mut self) {
         let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
-        self.admit(arrivals(self.scene), &|draft, arrival, rng| let_in(draft, arrival, taste, rng));
+        let (people, waiting) = (self.agenda.coming.clone(), |agenda: &mut Agenda, left| agenda.coming = left);
+        self.admit(people, waiting, &|draft, arrival, rng| let_in(draft, arrival, taste, rng));
     }
 
-    /// Puts in people who are to be somewhere at some time, as many of them as find room in some rounds.
+    /// Puts in people who are to be somewhere at some time, as many of them as find room in some rounds; `waiting` takes
+    /// note of the others.
     fn admit<T: Copy + Sync>(
         &mut self,
         mut people: Vec<T>,
+        waiting: impl Fn(&mut Agenda, Vec<T>),
         propose: &(impl Fn(&mut Draft, T, &mut ChaCha8Rng) -> Option<()> + Sync),
     ) {
         for _ in 0..ADMIT_ROUNDS {
             let mut left = Vec::new();
-            for some in people.chunks(self.crew.batch) {
-                if self.goes_on(Phase::Seed) {
-                    let made = self.crew.work(some.len(), |i, draft, rng| propose(draft, some[i], rng), |_, _| true);
-                    self.most += made.iter().filter(|&&made| made).count();
-                    left.extend(some.iter().zip(made).filter(|(_, made)| !made).map(|(&person, _)| person));
+            for (k, some) in people.chunks(self.crew.batch).enumerate() {
+                waiting(&mut self.agenda, [&left[..], &people[k * self.crew.batch..]].concat());
+                if !self.goes_on(Phase::Seed) {
+                    return;
                 }
+                let made = self.crew.work(some.len(), |i, draft, rng| propose(draft, some[i], rng), |_, _| true);
+                let admitted = made.iter().filter(|&&made| made).count();
+                (self.most, self.agenda.admitted) = (self.most + admitted, self.agenda.admitted + admitted);
+                left.extend(some.iter().zip(made).filter(|(_, made)| !made).map(|(&person, _)| person));
             }
+            waiting(&mut self.agenda, left.clone());
             people = left;
         }
     }
 
-    /// Puts in what the scene has placed; false if not everybody found ways to and from it.
-    fn keyframes(&mut self) -> bool {
+    /// Puts in what the scene has placed, if everybody finds ways to and from it.
+    fn keyframes(&mut self) {
         let placed = &self.scene.placed;
         let taste = Taste { expansions: KEYFRAME_EXPANSIONS, ..self.taste };
-        placed.is_empty()
+        self.agenda.placed = placed.is_empty()
             || (0..KEYFRAME_TRIES).any(|_| {
                 self.goes_on(Phase::Seed) && self.crew.work_one(|draft, rng| keyframes(draft, placed, taste, rng))
-            })
+            });
     }
 
     /// Adds people who jump over what is low enough, if there is such.
@@ -585,8 +700,10 @@ fn stir(draft: &mut Draft, track: usize, taste: Taste, rng: &mut ChaCha8Rng) -> 
     draft.bridge_window(window, taste, rng)
 }
 
-fn status(chains: Chains, scene: &Scene, faults: usize) -> Status {
+/// How a run ended: `placed` if what the scene has placed is there.
+pub(super) fn status(chains: Chains, scene: &Scene, faults: usize, placed: bool) -> Status {
     match faults {
+        _ if !placed => Status::Imperfect("no ways were found to and from the placed patches".into()),
         0 => wishes(chains, scene),
         _ => Status::Imperfect(format!("{faults} faults of the final bodies are left")),
     }

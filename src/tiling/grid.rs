@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 /// Numbers on a grid; outside, the nearest of them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Grid {
     /// Where the first number is, metres.
     pub origin: Vec2,

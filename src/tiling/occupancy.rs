@@ -106,22 +106,26 @@ impl Occupancy {
     }
 
     /// The same pieces with a grid; without one as they were if they are too crowded for it.
-    pub fn opened(self, domain: &Domain, library: &Library) -> Result<Self, Self> {
+    pub fn opened(self, domain: &Domain, library: &Library) -> Result<Self, Box<Self>> {
         let mut open = Self { pieces: self.pieces, free: self.free, ..Self::new(domain, library) };
         match (0..open.pieces.len()).all(|id| open.show_if_room(id as PieceId)) {
             true => Ok(open),
-            false => Err(Self { cells: vec![], ..open }),
+            false => Err(Box::new(Self { cells: vec![], ..open })),
         }
     }
 
     fn show_if_room(&mut self, id: PieceId) -> bool {
-        let Some(piece) = self.get(id) else { return true };
-        let cells = (piece.shown_from..).zip(&piece.bodies).map(|(tick, body)| self.cell_of(tick, body.position));
-        let room = cells.into_iter().all(|cell| (self.cells[cell].count as usize) < CELL_BODIES);
-        if room {
+        let room = self.get(id).is_none_or(|piece| self.has_room(piece));
+        if room && self.get(id).is_some() {
             self.show(id);
         }
         room
+    }
+
+    /// True if there is room in the grid for all bodies of a piece.
+    pub fn has_room(&self, piece: &Piece) -> bool {
+        let room = |(tick, at): (i32, Vec2)| (self.cells[self.cell_of(tick, at)].count as usize) < CELL_BODIES;
+        (piece.shown_from..).zip(piece.bodies.iter().map(|b| b.position)).all(room)
     }
 
     /// Gives the grid's memory back; from now on only pieces can be asked for.

@@ -19,7 +19,7 @@ pub struct Options {
     pub method: Method,
     /// The same seed gives the same crowd.
     pub seed: u64,
-    /// Longest time to search, in seconds.
+    /// Longest time for search and final bodies, in seconds.
     pub time_secs: f64,
 }
 
@@ -85,4 +85,6 @@ pub struct Outcome {
     pub interpenetrations: usize,
     /// Seconds it took.
     pub solve_secs: f64,
+    /// Why the last checkpoint could not be written, if so.
+    pub unkept: Option<String>,
 }

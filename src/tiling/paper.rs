@@ -60,7 +60,7 @@ pub(super) fn tile(
     let chains = tiling.chains(&chains);
     let status = status(danglings, left, chains, scene);
     let crowd = bake(chains, scene, options.seed, played);
-    Outcome { crowd, status, danglings, interpenetrations: left, solve_secs: clock.secs() }
+    Outcome { crowd, status, danglings, interpenetrations: left, solve_secs: clock.secs(), unkept: None }
 }
 
 /// Tests the final bodies; where there is a fault, removes a patch and closes the gap anew.

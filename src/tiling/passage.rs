@@ -197,7 +197,11 @@ pub(super) fn shuffled<'p>(library: &Library, passages: &'p [Passage], rng: &mut
 
 #[cfg(test)]
 mod tests {
+    use super::super::bridge::Port;
     use super::super::common::plain_set;
+    use super::super::draft::Desk;
+    use super::super::study::LEAD;
+    use super::super::tracks::Tracks;
     use super::super::view::View;
     use super::*;
     use crate::deform::Limits;

@@ -205,6 +205,16 @@ impl Piece {
         self
     }
 
+    /// True if it is to the bit what [`Self::rigid`] makes.
+    pub fn is_rigid(&self, library: &Library) -> bool {
+        let rigid = Rigid::new(library, self.role, self.entry(), self.begin);
+        let source = &rigid.source.path;
+        let turned = |(now, then): (&f32, &f32)| *now == then + self.path.headings[0];
+        self.end - self.begin == rigid.source.ticks
+            && self.path.points.iter().zip(&source.points).all(|(&now, &then)| now == rigid.place(then))
+            && self.path.headings.iter().zip(&source.headings).all(turned)
+    }
+
     /// State at the entry.
     pub fn entry(&self) -> Ground {
         self.path.at(0)

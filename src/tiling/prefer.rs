@@ -15,14 +15,14 @@ use crate::motion::FPS;
 use crate::patch::PatchSet;
 
 /// The preference function of a scene. Without terms every patch is as good as any other: F = 1.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Preference {
     /// The factors of F.
     pub terms: Vec<Term>,
 }
 
 /// One factor of F: exp(-strength f).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Term {
     /// What f is.
     pub form: Form,
@@ -31,11 +31,13 @@ pub struct Term {
     /// Only of kinds with one of these labels; of all kinds if there are none.
     pub labels: Vec<String>,
     /// Only from the first to the second, seconds; at any time if none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub during: Option<[f32; 2]>,
 }
 
 /// Ready-made functions f.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Form {
     /// f_1 = (distance / within)^2 from a point, or from a path of several.
     Attract {
@@ -78,7 +80,8 @@ pub enum Form {
 }
 
 /// A field of directions on the ground.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Field {
     /// The same everywhere, radians.
     Heading(f32),

@@ -153,7 +153,7 @@ impl<'a> Tracks<'a> {
         let (domain, library) = (self.domain, self.library);
         match self.occupancy.opened(domain, library) {
             Ok(occupancy) => Ok(Self { occupancy, ..self }),
-            Err(occupancy) => Err(Box::new(Self { occupancy, ..self })),
+            Err(occupancy) => Err(Box::new(Self { occupancy: *occupancy, ..self })),
         }
     }
 
@@ -236,10 +236,7 @@ impl<'a> Tracks<'a> {
                 }
             }
             if !self.view().is_free(&piece) {
-                for id in ids.into_iter().rev() {
-                    self.occupancy.hide(id);
-                    self.occupancy.forget(id);
-                }
+                self.remove(ids);
                 return None;
             }
             ids.push(self.occupancy.insert(piece));
@@ -258,6 +255,38 @@ impl<'a> Tracks<'a> {
             numbers.push((instance, new));
         }
         new
+    }
+
+    /// Puts a person in, as a tiling was kept; false and nothing is changed if the grid has no room.
+    pub fn settle(&mut self, pieces: Vec<Piece>) -> bool {
+        let mut ids = Vec::with_capacity(pieces.len());
+        for piece in pieces {
+            if !self.occupancy.has_room(&piece) {
+                self.remove(ids);
+                return false;
+            }
+            ids.push(self.occupancy.insert(piece));
+        }
+        self.company += self.company_of(&ids);
+        self.set(NEWCOMER, ids);
+        true
+    }
+
+    /// Next number for an instance.
+    pub fn next_instance(&self) -> u32 {
+        self.next_instance
+    }
+
+    /// Numbers new instances from here on.
+    pub fn number_from(&mut self, next: u32) {
+        self.next_instance = next;
+    }
+
+    fn remove(&mut self, ids: Vec<PieceId>) {
+        for id in ids.into_iter().rev() {
+            self.occupancy.hide(id);
+            self.occupancy.forget(id);
+        }
     }
 
     fn set(&mut self, track: TrackId, pieces: Vec<PieceId>) {

@@ -72,8 +72,9 @@ describe("looks", () => {
   });
 
   it("are the same as in exported files", () => {
-    for (const [person, expected] of looks.entries()) {
-      const found = lookOf(person).map((color) => (color === null ? null : Number.parseInt(color.slice(1), 16)));
+    for (const [i, expected] of looks.entries()) {
+      const [person, team] = i < 40 ? [i, null] : [i - 40, i - 40];
+      const found = lookOf(person, team).map((color) => (color === null ? null : Number.parseInt(color.slice(1), 16)));
       expect(found).toEqual(expected);
     }
   });

@@ -19,6 +19,24 @@ function problem(bytes: ArrayBuffer): string {
 type Json = Record<string, never>;
 const broken = (alter: (header: never) => void) => problem(small({ alter: alter as FixtureOptions["alter"] & object }));
 
+describe("teams", () => {
+  const alter = (team: number) => (header: { domain: { teams?: string[] }; characters: { team?: number }[] }) => {
+    header.domain.teams = ["red", "blue"];
+    header.characters[1].team = team;
+  };
+
+  it("are read where there are some", () => {
+    const crowd = readCrowd(small({ alter: alter(1) as never }));
+    expect(crowd.teams).toEqual(["red", "blue"]);
+    expect(crowd.characters.map((c) => c.team)).toEqual([null, 1, null]);
+    expect(readCrowd(small()).teams).toEqual([]);
+  });
+
+  it("must be there", () => {
+    expect(broken(alter(2) as never)).toContain("team 2 does not exist");
+  });
+});
+
 describe("a valid crowd", () => {
   const crowd = readCrowd(small());
 

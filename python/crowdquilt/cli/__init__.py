@@ -1,4 +1,8 @@
-"""The command line. Exit codes: 0 fine, 1 a check failed, 2 bad input, 3 no perfect tiling in the given time."""
+"""The command line.
+
+Exit codes: 0 fine, 1 a check failed, 2 bad input, 3 a clean tiling that is short of a wish, 4 one with faults or loose
+ends.
+"""
 
 from __future__ import annotations
 

@@ -14,7 +14,15 @@ from crowdquilt._core import CrowdquiltError, __version__
 
 CHECK_FAILED = 1
 BAD_INPUT = 2
-NOT_PERFECT = 3
+WISH_UNMET = 3
+FAULTY = 4
+ENDS = {"perfect": 0, "short": WISH_UNMET, "imperfect": FAULTY}
+"""Exit codes of tilings by their status."""
+VERDICTS = {
+    "perfect": "[green]perfect[/green]",
+    "short": "[yellow]clean, but short of what was wished for[/yellow]",
+    "imperfect": "[red]not perfect[/red]",
+}
 
 app = typer.Typer(
     no_args_is_help=True,

@@ -11,8 +11,9 @@ from typing import Annotated
 import typer
 
 from crowdquilt import check, export, patch, report, samples
-from crowdquilt._core import Crowd, CrowdquiltError, Outcome, PatchSet, Scene
-from crowdquilt.cli.app import CHECK_FAILED, NOT_PERFECT, app, console, example
+from crowdquilt._core import Checkpoint, Crowd, CrowdquiltError, Outcome, PatchSet, Scene
+from crowdquilt.cli import keeping
+from crowdquilt.cli.app import CHECK_FAILED, ENDS, VERDICTS, app, console, example
 from crowdquilt.cli.progress import solve
 from crowdquilt.cli.tables import check_table
 from crowdquilt.cli.world import check_world
@@ -30,24 +31,35 @@ def tell(outcome: Outcome) -> None:
     """One line on how a solve ended."""
     people, patches = len(outcome.crowd), len(outcome.crowd.instances)
     made = f"{people} people, {patches} patches, {outcome.danglings} danglings in {outcome.solve_secs:.2f} s"
-    if outcome.status == "perfect":
-        console.print(f"[green]perfect[/green]: {made}")
-    elif outcome.status == "short" and people:
-        console.print(f"[yellow]perfect, but a wish is unmet[/yellow]: {made}; {outcome.reason}", soft_wrap=True)
-    else:
-        console.print(f"[red]not perfect[/red]: {made}; {outcome.reason}", soft_wrap=True)
+    console.print(f"{VERDICTS[outcome.status]}: {made}{'; ' if outcome.reason else ''}{outcome.reason}", soft_wrap=True)
 
 
-@app.command(epilog=example("tile samples.patches --scene plaza.toml -o plaza.crowd --seed 7"))
+@app.command(
+    epilog=example(
+        "tile samples.patches --scene plaza.toml -o plaza.crowd --seed 7",
+        "tile --resume plaza.tiling",
+        "tile --resume plaza.tiling --density 0.7 -o denser.crowd",
+    )
+)
 def tile(
     patches: Annotated[
-        Path, typer.Argument(help="Patch set (.patches), or `samples`: cut from the generated captures.")
-    ],
-    out: Annotated[Path, typer.Option("--out", "-o", help="Crowd to write (.crowd).")],
+        Path | None,
+        typer.Argument(
+            help="Patch set (.patches), or `samples`: cut from the generated captures. "
+            "With --resume the one of the earlier run, if not given."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="Crowd to write (.crowd). With --resume beside the checkpoint, if not given."),
+    ] = None,
     scene: Annotated[Path | None, typer.Option(help="Scene (.toml); the demo's 12 x 12 m if not given.")] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Same seed, same crowd.")] = 1,
+    seed: Annotated[int | None, typer.Option(min=0, help="Same seed, same crowd; 1 if not given.")] = None,
     method: Annotated[Method, typer.Option(help="Our engine, or Algorithms 1 and 2 of the paper.")] = Method.engine,
-    time: Annotated[float, typer.Option(help="Longest search, in seconds.")] = 60.0,
+    time: Annotated[
+        float,
+        typer.Option(min=0, help="Longest time for search and bodies, in seconds. With --resume, 0 only reports."),
+    ] = 60.0,
     characters: Annotated[int | None, typer.Option(help="How many people, instead of the scene's.")] = None,
     density: Annotated[float | None, typer.Option(help="How many per square metre, instead of the scene's.")] = None,
     interaction: Annotated[
@@ -57,30 +69,61 @@ def tile(
     report_to: Annotated[
         Path | None, typer.Option("--report", help="Also check the crowd and write report.json.")
     ] = None,
+    resume: Annotated[
+        Path | None, typer.Option(help="Go on from a checkpoint (.tiling) with its scene, patch set and seed.")
+    ] = None,
+    checkpoint: Annotated[
+        Path | None,
+        typer.Option(help="Write checkpoints here and leave the last one; else beside the crowd until it is perfect."),
+    ] = None,
+    no_checkpoint: Annotated[bool, typer.Option("--no-checkpoint", help="Write no checkpoints.")] = False,
 ) -> None:
     """Tile a scene with motion patches until no end is loose and nobody collides.
 
-    Ctrl-C keeps the best tiling so far. Exit code 3 if that, or the best within the time, is not perfect.
+    Every ten seconds, and when the search ends or is stopped by Ctrl-C or SIGTERM, the tiling is written to a
+    checkpoint beside the crowd. A run that was killed goes on from it with --resume.
+
+    Whatever was reached is saved. Exit code 0: perfect. 3: clean, but short of what was wished for. 4: faults or loose
+    ends are left. 2: bad input.
     """
-    if not time > 0:
+    kept = Checkpoint.load(resume) if resume else None
+    set_file = keeping.set_file(patches, kept, resume)
+    if not time > 0 and not kept:
         raise typer.BadParameter(f"expected more than 0 seconds, found {time}", param_hint="--time")
-    kinds = load_set(patches)
-    where = Scene.load(scene) if scene else Scene.demo()
+    if scene and kept:
+        raise typer.BadParameter("a checkpoint has its scene: expected no other", param_hint="--scene")
+    kinds = load_set(set_file)
+    where = kept.scene if kept else Scene.load(scene) if scene else Scene.demo()
     where = where.replace(characters=characters, density=density, interaction=interaction)
+    if kept and not time > 0:
+        raise typer.Exit(keeping.report(kept, where, kinds))
+    crowd_file = keeping.crowd_file(out, resume)
+    plan = keeping.plan(crowd_file, checkpoint, no_checkpoint or method == Method.paper)
     try:
-        outcome = solve(where, kinds, seed=seed, method=method, time=time, threads=threads)
+        outcome = solve(
+            where,
+            kinds,
+            seed=seed if seed is not None else kept.seed if kept else 1,
+            method=method,
+            time=time,
+            threads=threads,
+            resume=kept,
+            checkpoint=plan.file,
+            patches_name=str(set_file),
+        )
     except CrowdquiltError as error:
         # The core speaks of "scene" and "patch set"; the user knows them by their files.
-        raise CrowdquiltError(name_files(str(error), scene, patches)) from None
-    out.parent.mkdir(parents=True, exist_ok=True)
-    outcome.crowd.save(out)
+        raise CrowdquiltError(name_files(str(error), scene, set_file, resume)) from None
+    crowd_file.parent.mkdir(parents=True, exist_ok=True)
+    outcome.crowd.save(crowd_file)
     if report_to:
-        written = Crowd.load(out)  # the report is about the file, whose numbers are rounded
+        written = Crowd.load(crowd_file)  # the report is about the file, whose numbers are rounded
         report.save(report.build(written, check.check(written), outcome), report_to)
     tell(outcome)
-    console.print(f"{out}: written")
-    if outcome.status == "imperfect" or not len(outcome.crowd):
-        raise typer.Exit(NOT_PERFECT)
+    console.print(f"{crowd_file}: written")
+    plan.finish(outcome)
+    if code := ENDS[outcome.status]:
+        raise typer.Exit(code)
 
 
 def load_set(patches: Path) -> PatchSet:
@@ -92,9 +135,9 @@ def load_set(patches: Path) -> PatchSet:
         return patch.cut(folder)
 
 
-def name_files(message: str, scene: Path | None, patches: Path) -> str:
+def name_files(message: str, scene: Path | None, patches: Path, resume: Path | None) -> str:
     """A message of the core with the file in front, where it names only the kind of input."""
-    for origin, file in (("scene: ", scene), ("patch set: ", patches)):
+    for origin, file in (("scene: ", scene), ("patch set: ", patches), ("checkpoint: ", resume)):
         if file and message.startswith(origin):
             return f"{file}: {message.removeprefix(origin)}"
     return message

@@ -1,4 +1,4 @@
-"""A solve as it is seen on the terminal, and how Ctrl-C ends it."""
+"""A solve as it is seen on the terminal, and how Ctrl-C and SIGTERM end it."""
 
 from __future__ import annotations
 
@@ -27,18 +27,21 @@ PHASES = {
 
 @contextmanager
 def interruptible() -> Iterator[list[bool]]:
-    """Yield a list that Ctrl-C puts a True into; a second Ctrl-C ends the program at once."""
+    """Yield a list that Ctrl-C and SIGTERM put a True into; a second one ends the program at once."""
     asked: list[bool] = []
+    signals = (signal.SIGINT, signal.SIGTERM)
 
     def stop(_signal: int, _frame: FrameType | None) -> None:
         asked.append(True)
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        for each in signals:
+            signal.signal(each, signal.SIG_DFL)
 
-    before = signal.signal(signal.SIGINT, stop)
+    before = {each: signal.signal(each, stop) for each in signals}
     try:
         yield asked
     finally:
-        signal.signal(signal.SIGINT, before)
+        for each, handler in before.items():
+            signal.signal(each, handler)
 
 
 def solve(
@@ -49,8 +52,9 @@ def solve(
     method: str = "engine",
     time: float = 60.0,
     threads: int | None = None,
+    **kept: Any,
 ) -> Outcome:
-    """Tile with a progress bar; Ctrl-C keeps the best tiling so far."""
+    """Tile with a progress bar; Ctrl-C keeps the best tiling so far. `kept` is what `tile` is told of checkpoints."""
     columns = (
         SpinnerColumn(),
         TextColumn("{task.description}", justify="left"),
@@ -89,7 +93,7 @@ def solve(
             )
             return not asked
 
-        return tile(scene, patches, seed=seed, method=method, time=time, threads=threads, progress=show)
+        return tile(scene, patches, seed=seed, method=method, time=time, threads=threads, progress=show, **kept)
 
 
 def make_set(source: Path, captures: Path | None, **options: Any) -> Made:

@@ -13,7 +13,7 @@ import typer
 from crowdquilt import bench as benches
 from crowdquilt import demo as demos
 from crowdquilt._core import CrowdquiltError, Outcome, PatchSet, Scene
-from crowdquilt.cli.app import CHECK_FAILED, NOT_PERFECT, app, console, example
+from crowdquilt.cli.app import CHECK_FAILED, ENDS, app, console, example
 from crowdquilt.cli.progress import solve
 
 
@@ -22,7 +22,7 @@ def demo(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder to write to.")],
     scene: Annotated[Path | None, typer.Option(help="Scene (.toml); 12 x 12 m for 20 s if not given.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Same seed, same crowd.")] = 1,
-    time: Annotated[float, typer.Option(help="Longest search, in seconds.")] = 60.0,
+    time: Annotated[float, typer.Option(help="Longest time for search and bodies, in seconds.")] = 60.0,
     threads: Annotated[int | None, typer.Option(min=1, help="Threads; all cores if not given.")] = None,
     show: Annotated[bool, typer.Option("--show", help="Only tell what the folder holds already.")] = False,
 ) -> None:
@@ -50,17 +50,15 @@ def tell(out: Path) -> None:
         console.print(line, soft_wrap=True, markup=False)
     view = "make view" if out == Path("out/demo") else f"crowdquilt view {out / 'crowd.crowd'}"
     console.print(f"Watch it: [bold]{view}[/bold]   Look at it: {out / 'plan.png'}, {out / 'loom.png'}", soft_wrap=True)
-    if data["status"] == "imperfect" or not data["characters"]:
-        raise typer.Exit(NOT_PERFECT)
-    if not data["ok"]:
-        raise typer.Exit(CHECK_FAILED)
+    if code := ENDS[data["status"]] or (0 if data["ok"] else CHECK_FAILED):
+        raise typer.Exit(code)
 
 
 @app.command(epilog=example("bench", "bench tiling --json"))
 def bench(
     area: Annotated[str | None, typer.Argument(help=f"One of: {', '.join(benches.AREAS)}. All if not given.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
-    seeds: Annotated[int, typer.Option(min=1, help="Runs per row; the median counts.")] = 5,
+    seeds: Annotated[int, typer.Option(min=1, help="Runs per row: perfect k of so many, least, median, most.")] = 5,
     patches: Annotated[Path | None, typer.Option(help="Tile with this patch set instead of the samples' one.")] = None,
 ) -> None:
     """Measure what we reach beside the reference."""

@@ -52,7 +52,7 @@ def plan(
     borders(axes, low, high, seams)
     kind_colours, palette = style.colours(crowd)
     hulls(axes, crowd, who, secs, kind_colours)
-    now = person_colours(crowd, who, secs, kind_colours)
+    now = person_colours(crowd, who, secs, kind_colours) | team_colours(crowd)
     trails(axes, crowd, secs, now)
     bodies(axes, crowd, secs, now)
     boxes(axes, crowd, secs)
@@ -138,6 +138,11 @@ def person_colours(crowd: Crowd, who: Lives, secs: float, kind_colours: list[sty
     return found
 
 
+def team_colours(crowd: Crowd) -> dict[int, style.Colour]:
+    """The colours of those who are of a team: it tells more than the patch, which its hull shows anyway."""
+    return {person: style.team(team) for person, team in enumerate(crowd.team_of) if team is not None}
+
+
 def trails(axes: Axes, crowd: Crowd, secs: float, colours: dict[int, style.Colour]) -> None:
     """Where everybody came from, fading into the past."""
     segments, tints, widths = [], [], []
@@ -215,7 +220,15 @@ def captions(sheet: Figure, crowd: Crowd, who: Lives, secs: float, palette: dict
     subtitle = f"Seen from above at {secs:.1f} s of {crowd.seconds:.0f} s   ·   {company} of them in company"
     style.heading(sheet, f"{len(people)} people on {style.metres(crowd)}", subtitle, left)
     entries = [(f"{name} {counts[name]}", colour) for name, colour in palette.items() if counts[name]]
-    style.legend(sheet, [*entries, (f"alone {len(people) - company}", style.ALONE)], left, 1 - left)
+    alone = (f"alone {len(people) - company}", style.ALONE)
+    style.legend(sheet, [*team_entries(crowd, people), *entries, alone], left, 1 - left)
+
+
+def team_entries(crowd: Crowd, people: np.ndarray) -> list[tuple[str, style.Colour]]:
+    """How many of each team are there."""
+    team_of = crowd.team_of
+    teams = [team_of[int(person)] for person in people]
+    return [(f"{name} {teams.count(i)}", style.team(i)) for i, name in enumerate(crowd.teams)]
 
 
 def scale_bar(axes: Axes, corner: np.ndarray) -> None:

@@ -24,6 +24,7 @@ INK = "#26282b"
 FAINT = "#8b8a85"
 HAIR = "#d9d6cd"
 ALONE = to_rgb("#a3a6a8")
+TEAMS = ("#2456a6", "#d4572a", "#2f8f5b", "#e0b12f", "#8a3fa0", "#1f9aa8")  # as src/export/look.rs
 TOGETHER = (
     "#c8443f", "#2d6fa3", "#e0a02c", "#4f8f54", "#8659a3", "#db7336",
     "#2f9c9a", "#b8508c", "#7c6a45", "#5d6fd0", "#91a83a", "#7d3c4a",
@@ -58,6 +59,11 @@ def colours(crowd: Crowd) -> tuple[list[Colour], dict[str, Colour]]:
     names = [name for name, _ in sorted(used.items(), key=lambda item: (-item[1], item[0]))]
     palette = {name: to_rgb(TOGETHER[i % len(TOGETHER)]) for i, name in enumerate(names)}
     return [palette.get(activity(k), ALONE) if k.people > 1 else ALONE for k in kinds], palette
+
+
+def team(index: int) -> Colour:
+    """The colour of a team."""
+    return to_rgb(TEAMS[index % len(TEAMS)])
 
 
 def swept(points: np.ndarray, radius: float, corners: int = 32) -> np.ndarray:

@@ -34,6 +34,7 @@ fn set(names: &[&str], kinds: &[&[(u32, u32)]]) -> PatchSet {
     PatchSet {
         groups: names.iter().map(|n| PoseGroup { name: (*n).into() }).collect(),
         kinds: kinds.iter().enumerate().map(|(i, ends)| kind(format!("k{i}"), ends, turn(i))).collect(),
+        study: None,
     }
 }
 

@@ -4,6 +4,7 @@
 mod blocks;
 mod parts;
 mod read;
+mod sound;
 mod wants;
 
 use std::path::Path;
@@ -21,7 +22,7 @@ use crate::{Error, Result};
 pub use parts::{KindFilter, Periodic, Placed, Sink, Source, Team, Wang};
 
 /// What to tile: a domain open (cropped) in time, and wishes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Scene {
     /// Everybody stays inside.
     pub region: Polygon,

@@ -4,7 +4,7 @@ pub use crate::geom::Periodic;
 use crate::geom::{Gate, Ground, Polygon};
 
 /// Which kinds of a patch set are used, by their labels.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct KindFilter {
     /// Only kinds with one of these labels; all if there are none.
     pub only: Vec<String>,
@@ -21,25 +21,26 @@ impl KindFilter {
 }
 
 /// Where people come in.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Source {
     /// Where.
     pub gate: Gate,
     /// When one comes, seconds, in order.
     pub times: Vec<f32>,
     /// Whose they are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub team: Option<String>,
 }
 
 /// Where people go out.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sink {
     /// Where.
     pub gate: Gate,
 }
 
 /// The region is covered by tiles with coloured edges, each of which is worked out by itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Wang {
     /// Side of a tile, metres.
     pub tile: f32,
@@ -50,7 +51,7 @@ pub struct Wang {
 }
 
 /// A patch that the user put where it is: the rest is tiled around it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Placed {
     /// Name of the kind.
     pub kind: String,
@@ -61,7 +62,7 @@ pub struct Placed {
 }
 
 /// People who belong together.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Team {
     /// Its name.
     pub name: String,
@@ -70,5 +71,6 @@ pub struct Team {
     /// Where they are at the first moment.
     pub start: Polygon,
     /// Which way they look then, radians; any if none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub heading: Option<f32>,
 }

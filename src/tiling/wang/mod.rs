@@ -154,7 +154,7 @@ pub(super) fn tile(
     };
     let crowd = bake(tracks.chains(), scene, options.seed, played);
     let solve_secs = start.elapsed().as_secs_f64();
-    Ok(Outcome { crowd, status, danglings: 0, interpenetrations: faults.len(), solve_secs })
+    Ok(Outcome { crowd, status, danglings: 0, interpenetrations: faults.len(), solve_secs, unkept: None })
 }
 
 /// The scene of one tile: as many people as are on it at once.

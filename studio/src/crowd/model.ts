@@ -46,6 +46,8 @@ export interface Character {
   firstFrame: number;
   /** Index of the build. */
   build: number;
+  /** Index of the team; null of who is of none. */
+  team: number | null;
   fragments: Fragment[];
 }
 
@@ -91,6 +93,8 @@ export interface Crowd {
   lastFrame: number;
   /** Where the crowd repeats: along x and z with the region, in time with the last frame, which is the first again. */
   periodic: { x: boolean; z: boolean; t: boolean };
+  /** Names of the teams. */
+  teams: string[];
   kinds: Kind[];
   /** Kind of every instance. */
   instances: number[];

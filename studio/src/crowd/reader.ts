@@ -29,6 +29,7 @@ export function readCrowd(buffer: ArrayBuffer): Crowd {
     }),
     lastFrame: count(domain.last_frame, "header.domain.last_frame"),
     periodic: periodic(domain.periodic),
+    teams: list(domain.teams ?? [], "header.domain.teams").map((t) => text(t, "header.domain.teams")),
     kinds: list(object(header.set, "header.set").kinds, "header.set.kinds").map(kind),
     instances: list(header.instances, "header.instances").map((v, i) => {
       return count(object(v, `instance ${i}`).kind, `instance ${i}, kind`);
@@ -123,7 +124,8 @@ function characters(values: unknown[]): Character[] {
     });
     const frames = count(v.frames, `${place}, frames`);
     const build = v.build === undefined ? 0 : count(v.build, `${place}, build`);
-    const character = { begin: count(v.begin, `${place}, begin`), frames, firstFrame, build, fragments };
+    const team = v.team === undefined ? null : count(v.team, `${place}, team`);
+    const character = { begin: count(v.begin, `${place}, begin`), frames, firstFrame, build, team, fragments };
     firstFrame += frames;
     return character;
   });
@@ -202,6 +204,9 @@ function checkReferences(crowd: Crowd): void {
   for (const [i, character] of crowd.characters.entries()) {
     if (character.build >= crowd.builds.length) {
       throw new FileProblem(`character ${i}`, `build ${character.build} does not exist`);
+    }
+    if (character.team !== null && character.team >= crowd.teams.length) {
+      throw new FileProblem(`character ${i}`, `team ${character.team} does not exist`);
     }
     for (const [k, f] of character.fragments.entries()) {
       const kind = crowd.kinds[crowd.instances[f.instance] ?? -1];

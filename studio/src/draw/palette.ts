@@ -41,6 +41,8 @@ const SHIRT = [
 const TROUSERS = [
   "#2f3a4d", "#46546a", "#6a5a4a", "#857b6b", "#262a31", "#3d4c45", "#5c4f5e", "#9a9484", "#6d8299", "#4a3a33",
 ]; // biome-ignore format: a palette
+/** Shirts of teams. */
+const TEAM = ["#2456a6", "#d4572a", "#2f8f5b", "#e0b12f", "#8a3fa0", "#1f9aa8"];
 const SHOES = ["#f0ede6", "#3a2f29", "#23252a", "#8a5a3a", "#b3b6bb", "#7a3b36"];
 const SOLE = ["#dedad2", "#2a2725", "#e9e6df"];
 
@@ -97,8 +99,17 @@ export enum Part {
 }
 export const PART_COUNT = 13;
 
-/** The sRGB colour of every part of a person; null where the person has no such thing. */
-export function lookOf(person: number): (string | null)[] {
+/**
+ * The sRGB colour of every part of a person; null where the person has no such thing. Who is of a team wears its shirt,
+ * with long sleeves.
+ */
+export function lookOf(person: number, team: number | null = null): (string | null)[] {
+  const look = ownLookOf(person);
+  if (team !== null) look[Part.Shirt] = look[Part.Sleeve] = TEAM[team % TEAM.length];
+  return look;
+}
+
+function ownLookOf(person: number): (string | null)[] {
   const pick = (list: readonly string[], salt: number) => list[dealt(person, salt, list.length)];
   const [skin, shirt, trousers] = [pick(SKIN, 1), pick(SHIRT, 4), pick(TROUSERS, 5)];
   const [bottoms, style] = [dealt(person, 7, 8), dealt(person, 10, 8)];
@@ -124,8 +135,8 @@ export function lookOf(person: number): (string | null)[] {
 }
 
 /** sRGB bytes and presence (alpha) of every part of a person. */
-export function looksOf(person: number): number[] {
-  return lookOf(person).flatMap((color) => (color === null ? [0, 0, 0, 0] : [...bytes(color), 255]));
+export function looksOf(person: number, team: number | null = null): number[] {
+  return lookOf(person, team).flatMap((color) => (color === null ? [0, 0, 0, 0] : [...bytes(color), 255]));
 }
 
 /** The colours of the roles of a kind, as on the contact sheet (python/crowdquilt/plot/sheet.py). */

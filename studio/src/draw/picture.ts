@@ -143,6 +143,7 @@ export class Picture {
     people.uniforms.chosen.value = store.get("person") ?? -1;
     people.body.visible = people.spots.visible = store.get("bodies");
     people.repeat(store.get("tiles"));
+    stage.repeat(store.get("tiles"));
     people.update(time, lift);
     boxes.group.visible = store.get("bodies");
     boxes.update(time, lift, !inLoom);

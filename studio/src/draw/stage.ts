@@ -20,6 +20,7 @@ import {
 } from "three";
 import { bounds } from "../crowd/hull";
 import type { Crowd, Vec2 } from "../crowd/model";
+import { type Tile, tileOf, tileOffsets } from "../crowd/tiles";
 import { discard } from "./discard";
 import { Obstacles } from "./obstacles";
 import { LIGHT, type Theme } from "./palette";
@@ -35,7 +36,11 @@ export class Stage {
   radius = 10;
   private readonly hemisphere: HemisphereLight;
   private readonly ground = new Group();
-  private obstacles: Obstacles | null = null;
+  /** Those of the crowd's own tile, which come first, and of all other tiles. */
+  private obstacles: Obstacles[] = [];
+  /** What is to be seen of the other tiles of a crowd that repeats. */
+  private readonly images = new Group();
+  private floor: ShaderMaterial | null = null;
 
   constructor(
     canvas: HTMLCanvasElement,
@@ -64,14 +69,32 @@ export class Stage {
     this.center.set((low[0] + high[0]) / 2, 0, (low[1] + high[1]) / 2);
     this.radius = Math.hypot(high[0] - low[0], high[1] - low[1]) / 2;
     for (const old of [...this.ground.children]) discard(old);
-    this.ground.add(this.plane(crowd.region), this.shadows(), this.border(crowd.region));
-    this.obstacles = new Obstacles(crowd, this.theme.obstacle);
-    this.ground.add(this.obstacles.group);
+    for (const old of [...this.images.children]) discard(old);
+    const tile = tileOf(crowd);
+    this.ground.add(this.plane(crowd.region, tile), this.shadows(), this.border(crowd.region), this.images);
+    this.obstacles = tileOffsets(tile).map(() => new Obstacles(crowd, this.theme.obstacle));
+    this.ground.add(this.obstacles[0].group);
+    for (const [i, [x, z]] of tileOffsets(tile).entries()) {
+      if (i === 0) continue;
+      const image = new Group().add(this.border(crowd.region), this.obstacles[i].group);
+      image.position.set(x, 0, z);
+      this.images.add(image);
+    }
+    this.repeat(false);
+  }
+
+  /** Shows the ground of all tiles around the crowd's own, or of that one alone. */
+  repeat(all: boolean): void {
+    const shown = all && this.images.children.length > 0;
+    this.images.visible = shown;
+    if (!this.floor) return;
+    this.floor.uniforms.reach.value = shown ? 1 : 0;
+    this.floor.uniforms.radius.value = shown ? 3 * this.radius : this.radius;
   }
 
   /** Brings obstacles that move to `secs`. */
   update(secs: number): void {
-    this.obstacles?.update(secs);
+    for (const obstacles of this.obstacles) obstacles.update(secs);
   }
 
   /** Puts the shadows' box around `focus`: sharp where one looks, whatever the size of the crowd. */
@@ -94,7 +117,7 @@ export class Stage {
     this.renderer.setSize(width, height, false);
   }
 
-  private plane(region: readonly Vec2[]): Mesh {
+  private plane(region: readonly Vec2[], tile: Tile): Mesh {
     const corners = region.slice(0, 32).map(([x, z]) => new Vector2(x, z));
     const { theme } = this;
     const colors = { ground: theme.ground, region: theme.region, line: theme.line, background: theme.background };
@@ -104,6 +127,9 @@ export class Stage {
         radius: { value: this.radius },
         ...Object.fromEntries(Object.entries(colors).map(([k, c]) => [`${k}Color`, { value: new Color(c) }])),
         corners: { value: corners },
+        middle: { value: new Vector2(...tile.middle) },
+        period: { value: new Vector2(...tile.period) },
+        reach: { value: 0 },
       },
       vertexShader: GROUND_VERTEX,
       fragmentShader: `#define CORNERS ${corners.length}\n${GROUND_FRAGMENT}`,
@@ -111,6 +137,7 @@ export class Stage {
       polygonOffsetFactor: 2,
       polygonOffsetUnits: 2,
     });
+    this.floor = material;
     const size = Math.max(this.radius * 12, 80);
     const mesh = new Mesh(new PlaneGeometry(size, size).rotateX(-Math.PI / 2), material);
     mesh.position.copy(this.center);
@@ -119,7 +146,7 @@ export class Stage {
 
   private shadows(): Mesh {
     const material = new ShadowMaterial({ opacity: 0.3, color: 0x1d1a22 });
-    const mesh = new Mesh(new PlaneGeometry(this.radius * 4, this.radius * 4).rotateX(-Math.PI / 2), material);
+    const mesh = new Mesh(new PlaneGeometry(this.radius * 6, this.radius * 6).rotateX(-Math.PI / 2), material);
     mesh.position.copy(this.center).setY(0.002);
     mesh.receiveShadow = true;
     mesh.renderOrder = 1;
@@ -154,7 +181,7 @@ void main() {
 /** A grid of 1 m, fainter with distance; the region is lighter; far away the ground becomes the background. */
 const GROUND_FRAGMENT = /* glsl */ `
 uniform vec3 groundColor, regionColor, lineColor, backgroundColor, center; uniform float radius;
-uniform vec2 corners[CORNERS];
+uniform vec2 corners[CORNERS], middle, period; uniform float reach;
 varying vec2 vGround;
 float grid(vec2 p, float spacing, float width) {
   vec2 q = p / spacing, w = fwidth(q);
@@ -171,7 +198,9 @@ bool inside(vec2 p) {
   return odd;
 }
 void main() {
-  bool in_region = inside(vGround);
+  // Where the ground repeats, a place in a tile nearby is the same place in the crowd's own.
+  vec2 tile = clamp(floor((vGround - middle) / max(period, vec2(1e-6)) + 0.5), vec2(-reach), vec2(reach));
+  bool in_region = inside(vGround - tile * period);
   vec3 color = in_region ? regionColor : groundColor;
   float lines = max(grid(vGround, 1.0, 0.002) * 0.42, grid(vGround, 5.0, 0.005) * 0.7);
   color = mix(color, lineColor, lines * (in_region ? 0.75 : 0.3));

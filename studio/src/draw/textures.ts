@@ -63,7 +63,7 @@ export class CrowdTextures {
       texture.minFilter = texture.magFilter = NearestFilter;
       texture.generateMipmaps = false;
     }
-    this.looks = colorTexture(packLooks(people, width));
+    this.looks = colorTexture(packLooks(crowd, width));
     const kindColor = (kind: number) => bytes(categorical(kind));
     const instanceColor = (instance: number) => bytes(categorical(instance));
     this.fragmentColors = colorTexture(packFragmentColors(crowd, width, kindColor, instanceColor));
@@ -109,10 +109,10 @@ export class CrowdTextures {
   }
 }
 
-function packLooks(people: number, width: number): Packed<Uint8Array> {
-  const height = Math.max(1, Math.ceil((people * PART_COUNT) / width));
+function packLooks(crowd: Crowd, width: number): Packed<Uint8Array> {
+  const height = Math.max(1, Math.ceil((crowd.characters.length * PART_COUNT) / width));
   const data = new Uint8Array(width * height * 4);
-  for (let person = 0; person < people; person++) data.set(looksOf(person), person * PART_COUNT * 4);
+  for (const [person, { team }] of crowd.characters.entries()) data.set(looksOf(person, team), person * PART_COUNT * 4);
   return { data, width, height };
 }
 

@@ -32,7 +32,7 @@ export function installInspector(parent: HTMLElement, store: Store, player: Play
     for (const [i, entry] of entries.entries()) entry.classList.toggle("current", i === fragment && !absent);
     const scroll = panel.querySelector(".chain")?.scrollTop ?? 0;
     panel.replaceChildren(
-      title(store, person),
+      title(store, crowd, person),
       ...(absent || fragment < 0
         ? [el("p", "quiet", ["Not here at this time."])]
         : now(crowd, c.fragments[fragment], members, store, person)),
@@ -59,8 +59,9 @@ export function installInspector(parent: HTMLElement, store: Store, player: Play
   });
 }
 
-function title(store: Store, person: number): HTMLElement {
-  const looks = looksOf(person);
+function title(store: Store, crowd: Crowd, person: number): HTMLElement {
+  const { team } = crowd.characters[person];
+  const looks = looksOf(person, team);
   const shirt = `rgb(${looks.slice(8, 11).join()})`;
   const following = store.get("follow");
   const follow = button(
@@ -81,7 +82,7 @@ function title(store: Store, person: number): HTMLElement {
   );
   return el("header", "", [
     el("span", "swatch", [], { style: `background:${shirt}` }),
-    el("h2", "", [`Person ${person}`]),
+    el("h2", "", [team === null ? `Person ${person}` : `Person ${person}, ${crowd.teams[team]}`]),
     follow,
     close,
   ]);

@@ -38,6 +38,7 @@ export function crowdOf(set: PatchSet, kind: SetKind): Crowd {
     obstacles: [],
     lastFrame: kind.lastFrame,
     periodic: { x: false, z: false, t: false },
+    teams: [],
     kinds: [{ name: kind.name, labels: kind.labels, people: kind.roles.length }],
     instances: [0],
     characters,
@@ -57,7 +58,7 @@ function canonical(): Flesh {
 function character(own: Role, role: number, firstFrame: number): Character {
   const { begin, frames } = own;
   const fragment = { instance: 0, role, begin, end: begin + frames - 1, firstSample: firstFrame, samples: frames };
-  return { begin, frames, firstFrame, build: 0, fragments: [fragment] };
+  return { begin, frames, firstFrame, build: 0, team: null, fragments: [fragment] };
 }
 
 /** Turns a packed rotation by `heading` about the vertical: in sets hips are relative to the path, in crowds global. */
