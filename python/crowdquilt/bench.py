@@ -16,7 +16,7 @@ from rich.table import Table
 from crowdquilt import motion, patch, refine, samples
 from crowdquilt._core import PatchSet, Scene, measure_patches, measure_poses, measure_replay, measure_street, tile
 from crowdquilt.bench_row import Row, row
-from crowdquilt.bench_tiling import EXAMPLES, PAPER, STATIC, example, growth, repeating, static
+from crowdquilt.bench_tiling import EXAMPLES, PAPER, STATIC, example, growth, planes, repeating, static
 
 Say = Callable[[str], None]
 
@@ -31,6 +31,7 @@ def tiling(seeds: int, say: Say, patches: PatchSet | None = None) -> list[Row]:
         rows += [found for scene in STATIC for found in static(scene, patches, seeds, say)]
         rows += [found for scene in EXAMPLES for found in example(scene, patches, seeds, say)]
         rows += repeating(patches, seeds, say)
+        rows += planes(patches, say)
         rows += growth(patches, say)
     else:
         rows += [found for scene in STATIC for found in static(scene, patches, seeds, say, published=True)]

@@ -261,3 +261,29 @@ def repeating(patches: PatchSet, seeds: int, say: Say) -> list[Row]:
                 figures.append(figure("repeating", f"{name}: {seam}, worst gap or overlap", max(worst), "m"))
         say(spread(f"repeating {name}", made))
     return figures
+
+
+PLANES = (3, 6, 10)
+"""Sides of planes of tiles of 10 x 10 m, in tiles."""
+
+
+def planes(patches: PatchSet, say: Say, characters: int = 40) -> list[Row]:
+    """Wang tiles: what a plane costs as it grows; no tile is worked out twice, all others cost only their bodies."""
+    figures = []
+    for tiles in PLANES:
+        side = 10 * tiles
+        text = (
+            f"region = [[0, 0], [{side}, 0], [{side}, {side}], [0, {side}]]\nduration_secs = 20\n"
+            f"characters = {characters * tiles**2}\ninteraction = 0.3\n[wang]\ntile = 10\n"
+        )
+        outcome = tile(Scene.from_toml(text), patches, seed=1, time=3600.0)
+        ok = outcome.status == "perfect" and check.check(outcome.crowd).ok
+        name = f"{side} x {side} m"
+        figures += [
+            figure("wang", f"{name}: characters", len(outcome.crowd)),
+            figure("wang", f"{name}: seconds", outcome.solve_secs, "s"),
+            figure("wang", f"{name}: per tile", outcome.solve_secs / tiles**2, "s"),
+            figure("wang", f"{name}: perfect and checked", float(ok)),
+        ]
+        say(f"tiling: wang {name}: {outcome.solve_secs:.1f} s, {'perfect and checked' if ok else outcome.reason}")
+    return figures

@@ -27,9 +27,10 @@ def test_rows_are_measured_on_the_scene(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(bench_tiling, "THREADED", (5, 0.3))
     monkeypatch.setattr(bench, "EXAMPLES", [bench_tiling.Example("hopping", None, 30, 7 * 60)])
     monkeypatch.setattr(bench_tiling, "REPEATING", (bench_tiling.Repeating(("x", "t"), 6, 8.0),))
+    monkeypatch.setattr(bench_tiling, "PLANES", (2,))
     lines: list[str] = []
     rows = {row.row: row for row in bench.AREAS["tiling"](2, lines.append)}
-    assert len(lines) == 4
+    assert len(lines) == 5
     people = rows["static-173: characters, least"]
     assert people.ours == 5 and people.ratio == pytest.approx(5 / 16)
     solve = rows["static-173: seconds, median"]
@@ -44,6 +45,9 @@ def test_rows_are_measured_on_the_scene(monkeypatch: pytest.MonkeyPatch) -> None
     assert rows["repeating: x, t: perfect and checked, of 2 seeds"].ours == 2
     assert rows["repeating: x, t: seam in time, worst gap or overlap"].ours < 0.01
     assert rows["repeating: x, t: border, worst gap or overlap"].ours < 0.01
+    assert rows["wang: 20 x 20 m: characters"].ours == 160
+    assert rows["wang: 20 x 20 m: perfect and checked"].ours == 1
+    assert rows["wang: 20 x 20 m: per tile"].ours == pytest.approx(rows["wang: 20 x 20 m: seconds"].ours / 4)
     assert rows["hopping: bumps, fewest"].ours > 5
     assert rows["area-growth: 5 x 5 m, per character"].ours > 0
     assert rows["area-growth: 5 x 5 m, one thread / two"].ours > 0

@@ -100,6 +100,34 @@ def test_what_cannot_be_done_is_refused_with_its_name(sample_set: cq.PatchSet) -
             cq.tiling.tile(scene, sample_set, method="paper")
 
 
+WANG = """region = [[0, 0], [16, 0], [16, 16], [0, 16]]
+duration_secs = 8
+characters = 48
+interaction = 0.1
+
+[wang]
+tile = 8
+"""
+
+
+def test_a_plane_of_tiles_is_tiled_and_checked(sample_set: cq.PatchSet) -> None:
+    outcome = cq.tiling.tile(cq.Scene.from_toml(WANG), sample_set, seed=1)
+    assert outcome.status == "perfect", outcome.reason
+    assert len(outcome.crowd) == 48
+    report = cq.check.check(outcome.crowd)
+    assert report.ok, report
+
+
+def test_all_that_is_wrong_with_tiles_is_told_with_its_line(sample_set: cq.PatchSet) -> None:
+    text = WANG.replace("[16, 16], [0, 16]", "[16, 17], [0, 17]").replace("tile = 8", "tile = 8\ncolors = 2")
+    with pytest.raises(cq.CrowdquiltError) as told:
+        cq.Scene.from_toml('periodic = ["t"]\n' + text + "[[source]]\nat = [0, 4]\nrate = 1\n")
+    for part in ("line 1: periodic", "line 2", "whole tiles of 8 m", "line 9", "colors", "line 10: source"):
+        assert part in str(told.value), part
+    with pytest.raises(cq.CrowdquiltError, match="wang"):
+        cq.tiling.tile(cq.Scene.from_toml(WANG), sample_set, method="paper")
+
+
 def test_a_crowd_that_repeats_is_unrolled_checked_and_drawn(sample_set: cq.PatchSet, tmp_path: Path) -> None:
     text = "region = [[0, 0], [8, 0], [8, 7], [0, 7]]\nduration_secs = 8\ncharacters = 8\ninteraction = 0.2\n"
     tile = cq.tiling.tile(cq.Scene.from_toml(text + 'periodic = ["x", "t"]\n'), sample_set, seed=2).crowd

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::{Method, Scene, repeat};
+use super::{Method, Scene, repeat, wang};
 use crate::patch::{PatchKind, PatchSet};
 use crate::{Error, Result};
 
@@ -65,6 +65,7 @@ fn possible(scene: &Scene, method: Method) -> Result<()> {
         ("team", method == Method::Paper && !scene.teams.is_empty()),
         ("rivals", method == Method::Paper && !scene.rivals.is_empty()),
         ("periodic", method == Method::Paper && scene.periodic.any()),
+        ("wang", method == Method::Paper && scene.wang.is_some()),
     ];
     let name = match method {
         Method::Engine => "the engine",
@@ -72,7 +73,7 @@ fn possible(scene: &Scene, method: Method) -> Result<()> {
     };
     match asked.iter().find(|a| a.1) {
         Some((key, _)) => Err(Error::invalid("scene", *key, format!("{name} cannot do this yet; leave it out"))),
-        None => repeat::possible(scene),
+        None => repeat::possible(scene).and_then(|()| wang::possible(scene)),
     }
 }
 

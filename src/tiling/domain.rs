@@ -47,7 +47,19 @@ pub(super) struct Domain {
     clearance: Vec<f32>,
     columns: usize,
     rows: usize,
+    crossings: Vec<Crossing>,
 }
+
+/// Somebody who crosses the border at certain moments, as only this one may: where they are from a tick on.
+pub(super) struct Crossing {
+    /// The first tick.
+    pub from: i32,
+    /// Tick by tick.
+    pub places: Vec<Vec2>,
+}
+
+/// Final hips are no farther from where the path of a rigid piece has them, metres.
+const HIPS_ASTRAY: f32 = 0.3;
 
 impl Domain {
     /// # Errors
@@ -82,6 +94,7 @@ impl Domain {
             clearance: Vec::new(),
             columns,
             rows,
+            crossings: vec![],
         };
         let node =
             |i: usize| domain.exact_clearance(min + Vec2::new((i % columns) as f32, (i / columns) as f32) * CELL);
@@ -91,6 +104,18 @@ impl Domain {
             return Err(Error::invalid("scene", "region", problem));
         }
         Ok(domain)
+    }
+
+    /// The same, crossed by some at certain moments.
+    pub fn crossed_by(self, crossings: Vec<Crossing>) -> Self {
+        Self { crossings, ..self }
+    }
+
+    /// True if this is where somebody is who crosses the border at that moment.
+    pub fn is_crossed(&self, tick: i32, hips: Vec2) -> bool {
+        let is_here = |place: &Vec2| place.distance(hips) < HIPS_ASTRAY;
+        let index = |c: &Crossing| usize::try_from(tick - c.from).ok();
+        self.crossings.iter().any(|c| index(c).and_then(|k| c.places.get(k)).is_some_and(is_here))
     }
 
     /// Distance to the nearest wall or obstacle that stands and is over all heads; negative beyond.

@@ -156,6 +156,11 @@ impl<'a> Draft<'a> {
         Some(ids)
     }
 
+    /// Takes out a piece that is nobody's.
+    pub fn hide_piece(&mut self, id: PieceId) {
+        self.desk.sketch.hide(id);
+    }
+
     /// Takes out the pieces of a window.
     pub fn hide(&mut self, window: Window) {
         let ids = &self.base.tracks[window.track][window.from..window.to];

@@ -32,12 +32,15 @@ use super::session::{Session, first_agenda, further_agenda};
 use super::source::let_in;
 use super::team::{line_up, team_of};
 use super::tracks::{Tracks, Window};
-use super::{Scene, paper};
+use super::wang::{Crosser, Gap, lead_across};
+use super::{Scene, paper, wang};
 use crate::patch::PatchSet;
 use crate::{Error, Result};
 
 /// Rounds of tries for people who come in at a source or begin in the place of a team.
 const ADMIT_ROUNDS: usize = 25;
+/// Rounds of tries for people who cross a tile's borders.
+const CROSS_ROUNDS: usize = 8;
 /// Rounds of tries for everybody in a placed patch to find their ways.
 const KEYFRAME_TRIES: usize = 25;
 /// States expanded for each of the ways.
@@ -93,6 +96,11 @@ const GENTLE_ROUNDS: usize = 6;
 const MEND_EXPANSIONS: usize = 1500;
 /// How often patches of several people that mending cost are made up for.
 const REFILLS: usize = 4;
+/// A tile may be short of company, if others are not: the same for tiles, and the part of the company wished for that is
+/// enough for now if another seed can be tried instead.
+const TILE_PATIENCE: usize = 12;
+const TILE_REFILLS: usize = 1;
+const TILE_COMPANY: f32 = 0.85;
 /// Rounds of mending.
 const MEND_ROUNDS: usize = 30;
 /// How fast a long step of a run is forgotten when others are shorter.
@@ -136,6 +144,16 @@ pub fn tile_in(
     let keeper = Keeper::new(session.keep, about);
     let set = &*admitted(scene, set, options.method)?;
     check_set(set)?;
+    if let Some(wang) = scene.wang {
+        if session.from.is_some() || session.keep.is_some() {
+            return Err(Error::invalid(
+                "checkpoint",
+                "wang",
+                "expected a scene without tiles: they are laid when all are done",
+            ));
+        }
+        return wang::tile(scene, wang, set, options, progress);
+    }
     let domain = Domain::new(scene)?;
     match options.method {
         Method::Engine => engine(session.from, keeper, scene, set, &domain, options, progress),
@@ -247,15 +265,14 @@ fn engine(
         None => (Tracks::new(&library, domain), first_agenda(scene)),
     };
     let crew = Crew::new(tracks, scene.region.area(), options.seed).going_on(agenda.drawn);
-    let taste = Taste { calm: calm(scene), expansions: library.steps(domain.horizon) * EXPANSIONS_PER_STEP };
     let passages = Passages::new(&library);
     // Whoever goes on does not wish for the same gatherings again.
-    let plan = Plan::new(&library, &passages, domain.horizon, options.seed.wrapping_add(agenda.drawn));
-    let (most, before) = (scene.characters + agenda.admitted, from.map_or(0.0, |kept| kept.reached.secs));
-    let (pace, passages) = (Pace::default(), &passages);
-    let mut engine = Engine { scene, crew, passages, plan, taste, clock, most, agenda, keeper, before, pace };
+    let mut engine = Engine::new(scene, &passages, crew, options.seed.wrapping_add(agenda.drawn), clock);
+    engine.most += agenda.admitted;
+    (engine.agenda, engine.keeper) = (agenda, keeper);
+    engine.before = from.map_or(0.0, |kept| kept.reached.secs);
     engine.search();
-    let Rehearsal { played, faults, .. } = engine.finish();
+    let Rehearsal { played, faults, .. } = engine.finish(REFILLS);
     engine.keep();
     let Engine { mut crew, clock, agenda, keeper, .. } = engine;
     crew.tracks.occupancy.close();
@@ -266,6 +283,51 @@ fn engine(
     }
     let (interpenetrations, unkept) = (faults.len(), keeper.into_problem());
     Ok(Outcome { crowd, status, danglings: 0, interpenetrations, solve_secs: clock.secs(), unkept })
+}
+
+/// Fills a tile of a plane: some of `residents` meet while it is empty, then those who cross its borders are led there and
+/// from there, stopped or not, then the others are added as anywhere.
+///
+/// # Errors
+/// Those who find no way; nobody if few people meet, which another seed may do better, and who is picky minds.
+pub(super) fn fill<'a>(
+    scene: &'a Scene,
+    passages: &'a Passages<'a>,
+    tracks: Tracks<'a>,
+    (crossers, residents): (&[Crosser], usize),
+    (seed, picky): (u64, bool),
+    clock: Clock<'a>,
+) -> std::result::Result<Tracks<'a>, Vec<Gap>> {
+    let crew = Crew::new(tracks, scene.region.area(), seed);
+    let mut engine = Engine::new(scene, passages, crew, seed, clock);
+    // Half the life of who crosses a border is here, or some more.
+    (engine.most, engine.visitors, engine.patience) = (residents, crossers.len() * 5 / 8, TILE_PATIENCE);
+    engine.gather();
+    let enough = TILE_COMPANY * engine.company_wish() as f32;
+    if picky && (engine.crew.tracks.company() as f32) < enough && engine.goes_on(Phase::Seed) {
+        return Err(vec![]);
+    }
+    engine.cross(crossers.iter().collect())?;
+    (engine.most, engine.visitors) = (crossers.len() + residents, 0);
+    engine.stand();
+    engine.add_the_others();
+    engine.finish(TILE_REFILLS);
+    Ok(engine.crew.tracks)
+}
+
+/// Mends a tiling that was put together, if it has faults.
+pub(super) fn mend_laid<'a>(
+    scene: &'a Scene,
+    passages: &'a Passages<'a>,
+    tracks: Tracks<'a>,
+    mut rehearsal: Rehearsal,
+    seed: u64,
+    clock: Clock<'a>,
+) -> (Tracks<'a>, Rehearsal) {
+    let crew = Crew::new(tracks, scene.region.area(), seed);
+    let mut engine = Engine::new(scene, passages, crew, seed, clock);
+    engine.mend(&mut rehearsal);
+    (engine.crew.tracks, rehearsal)
 }
 
 /// The denser the crowd, the more people rather stand than walk.
@@ -301,6 +363,10 @@ struct Engine<'a> {
     clock: Clock<'a>,
     /// Most people: those who are there anyway, those of the teams, and those who came in.
     most: usize,
+    /// Whole lives of others who are still to come.
+    visitors: usize,
+    /// Failed tries per person in a row after which no more patches of several people are wished for.
+    patience: usize,
     agenda: Agenda,
     keeper: Keeper<'a>,
     /// Seconds that earlier runs have taken.
@@ -308,7 +374,45 @@ struct Engine<'a> {
     pace: Pace,
 }
 
-impl Engine<'_> {
+impl<'a> Engine<'a> {
+    /// From the beginning, without checkpoints.
+    fn new(scene: &'a Scene, passages: &'a Passages<'a>, crew: Crew<'a>, seed: u64, clock: Clock<'a>) -> Self {
+        let (library, horizon) = (crew.tracks.library, crew.tracks.domain.horizon);
+        Self {
+            scene,
+            passages,
+            plan: Plan::new(library, passages, horizon, seed),
+            taste: Taste { calm: calm(scene), expansions: library.steps(horizon) * EXPANSIONS_PER_STEP },
+            crew,
+            clock,
+            most: scene.characters,
+            visitors: 0,
+            patience: ENRICH_PATIENCE,
+            agenda: Agenda::default(),
+            keeper: Keeper::none(),
+            before: 0.0,
+            pace: Pace::default(),
+        }
+    }
+
+    /// Adds people who come alone, and patches of several people where company is short.
+    fn add_the_others(&mut self) {
+        self.enrich(FIRST_PATIENCE);
+        self.seed();
+        self.enrich(self.patience);
+    }
+
+    /// Leads all who cross a tile's borders to and from where they do; an error are those who find no way.
+    fn cross(&mut self, mut left: Vec<&Crosser>) -> std::result::Result<(), Vec<Gap>> {
+        let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
+        for _ in 0..CROSS_ROUNDS {
+            let made = self.crew.work(left.len(), |i, draft, rng| lead_across(draft, left[i], taste, rng), |_, _| true);
+            left = left.into_iter().zip(made).filter(|(_, made)| !made).map(|(crosser, _)| crosser).collect();
+        }
+        let stuck: Vec<Gap> = left.into_iter().map(|crosser| crosser.gap).collect();
+        if stuck.is_empty() { Ok(()) } else { Err(stuck) }
+    }
+
     /// All that comes before the final bodies are tested.
     fn search(&mut self) {
         self.at(Stage::Place, Self::keyframes);
@@ -319,7 +423,7 @@ impl Engine<'_> {
         self.at(Stage::Stand, Self::stand);
         self.at(Stage::Acquaint, |engine| engine.enrich(FIRST_PATIENCE));
         self.at(Stage::Seed, Self::seed);
-        self.at(Stage::Enrich, |engine| engine.enrich(ENRICH_PATIENCE));
+        self.at(Stage::Enrich, |engine| engine.enrich(engine.patience));
         self.at(Stage::Mend, |_| ());
         self.keep();
     }
@@ -356,7 +460,8 @@ impl Engine<'_> {
 
     /// Ticks in patches of several people that are aimed at when everybody is there.
     fn company_wish(&self) -> usize {
-        let ticks = self.crew.tracks.presence() + self.people_left() * self.crew.tracks.domain.horizon as usize;
+        let ticks = self.crew.tracks.presence()
+            + (self.people_left() + self.visitors) * self.crew.tracks.domain.horizon as usize;
         (self.scene.interaction * ABOVE_WISH * ticks as f32) as usize
     }
 
@@ -533,16 +638,16 @@ impl Engine<'_> {
     }
 
     /// Mends, and where that cost more patches of several people than it may, puts new ones in and mends again.
-    fn finish(&mut self) -> Rehearsal {
+    fn finish(&mut self, refills: usize) -> Rehearsal {
         let mut rehearsal = Rehearsal::new(&self.crew.tracks);
         self.mend(&mut rehearsal);
-        for _ in 0..REFILLS {
+        for _ in 0..refills {
             let share = self.crew.tracks.multi_person_share();
             if share >= self.scene.interaction || !rehearsal.faults.is_empty() {
                 break;
             }
             // People may have been led other ways even if no patch found room.
-            self.enrich(ENRICH_PATIENCE);
+            self.enrich(self.patience);
             rehearsal.repeat(&self.crew.tracks);
             self.mend(&mut rehearsal);
             if self.crew.tracks.multi_person_share() <= share {
@@ -590,7 +695,7 @@ fn laden_every(library: &Library) -> usize {
 fn stir(draft: &mut Draft, track: usize, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let tracks = draft.base;
     let from = rng.random_range(0..tracks.tracks[track].len());
-    if tracks.people_of(tracks.tracks[track][from]) > 1 {
+    if !tracks.is_loose(tracks.tracks[track][from]) {
         return None;
     }
     let window = tracks.widen(Window { track, from, to: from + 1 }, STIR_TICKS);

@@ -213,7 +213,7 @@ fn rip_from(tracks: &Tracks, track: TrackId, entry: &Port) -> Option<usize> {
     let loops = tracks.domain.cycle.loops();
     for index in (0..tracks.index_before(track, entry.tick)).rev() {
         let from = tracks.port(track, index);
-        if entry.tick - from.tick > LONGEST_BRIDGE || tracks.people_of(tracks.tracks[track][index]) > 1 {
+        if entry.tick - from.tick > LONGEST_BRIDGE || !tracks.is_loose(tracks.tracks[track][index]) {
             return best.1;
         }
         let ease = easy_closings(tracks.library, from, *entry);
@@ -237,7 +237,7 @@ fn rip_to(tracks: &Tracks, track: TrackId, entry: &Port, exit: &Port) -> Option<
         if ease > best.0 {
             best = (ease, Some(index));
         }
-        if tracks.tracks[track].get(index).is_some_and(|&id| tracks.people_of(id) > 1) {
+        if tracks.tracks[track].get(index).is_some_and(|&id| !tracks.is_loose(id)) {
             break;
         }
     }
@@ -249,7 +249,7 @@ fn rip_to(tracks: &Tracks, track: TrackId, entry: &Port, exit: &Port) -> Option<
 fn no_patch_between(tracks: &Tracks, track: TrackId, begin: i32, end: i32) -> bool {
     tracks.tracks[track].iter().all(|&id| {
         let p = tracks.piece(id);
-        p.end <= begin || p.begin >= end || tracks.people_of(id) == 1
+        p.end <= begin || p.begin >= end || tracks.is_loose(id)
     })
 }
 
@@ -287,7 +287,7 @@ fn step_aside(draft: &mut Draft, parts: &[Part]) -> Option<Vec<Window>> {
         for id in draft.view().blockers(&piece)? {
             let track = tracks.owner(id);
             let index = tracks.index_at(track, tracks.piece(id).begin);
-            if tracks.people_of(id) > 1 || parts.iter().any(|p| p.track == track) {
+            if !tracks.is_loose(id) || parts.iter().any(|p| p.track == track) {
                 return None;
             }
             match windows.iter_mut().find(|w| w.track == track) {
@@ -303,7 +303,7 @@ fn step_aside(draft: &mut Draft, parts: &[Part]) -> Option<Vec<Window>> {
         return None;
     }
     for window in &mut windows {
-        if (window.from..window.to).any(|i| tracks.people_of(tracks.tracks[window.track][i]) > 1) {
+        if (window.from..window.to).any(|i| !tracks.is_loose(tracks.tracks[window.track][i])) {
             return None;
         }
         *window = tracks.widen(*window, BYSTANDER_TICKS);

@@ -54,7 +54,9 @@ impl Figure {
         };
         // Bones are so short that three discs each are as good as the whole.
         let free = |c: &Capsule| [0.0, 0.5, 1.0].into_iter().all(|t| inside(c.a.lerp(c.b, t), c.radius));
-        !domain.holds(Spot::ground(tick), self.center, self.radius) && !self.capsules.iter().all(free)
+        !domain.holds(Spot::ground(tick), self.center, self.radius)
+            && !domain.is_crossed(tick, self.center)
+            && !self.capsules.iter().all(free)
     }
 
     /// The same body somewhere else.

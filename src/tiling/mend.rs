@@ -9,6 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use super::bridge::Taste;
 use super::draft::Draft;
 use super::faults::Fault;
+use super::occupancy::PieceId;
 use super::piece::Company;
 use super::tracks::{TrackId, Tracks, Window};
 use super::tryout::is_clean;
@@ -24,7 +25,7 @@ const TRIES: i32 = 10;
 pub(super) fn mend(draft: &mut Draft, fault: Fault, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     (0..TRIES).find_map(|attempt| {
         let track = if rng.random_range(0..2) == 0 { fault.a } else { fault.b };
-        let at = near(draft.base, track, fault.tick, 1, |people| people == 1)?;
+        let at = near(draft.base, track, fault.tick, 1, |id| draft.base.is_loose(id))?;
         rebridge(draft, vec![Window { track, from: at, to: at + 1 }], attempt + 1..=attempt + 1, taste, rng)
     })
 }
@@ -34,7 +35,7 @@ pub(super) fn dissolve(draft: &mut Draft, fault: Fault, taste: Taste, rng: &mut 
     let tracks = draft.base;
     (0..TRIES).find_map(|attempt| {
         let track = if rng.random_range(0..2) == 0 { fault.a } else { fault.b };
-        let at = near(tracks, track, fault.tick, DISSOLVE_REACH, |people| people > 1)?;
+        let at = near(tracks, track, fault.tick, DISSOLVE_REACH, |id| tracks.people_of(id) > 1)?;
         let piece = tracks.piece(tracks.tracks[track][at]);
         // What a scene has placed stays.
         if !tracks.library.multi.contains(&tracks.library.roles[piece.role as usize].kind) {
@@ -47,9 +48,8 @@ pub(super) fn dissolve(draft: &mut Draft, fault: Fault, taste: Taste, rng: &mut 
     })
 }
 
-/// Index of the piece at `tick`, or of the nearest of `reach` neighbours on either side, whose patch has the wanted
-/// number of people.
-fn near(tracks: &Tracks, track: TrackId, tick: i32, reach: usize, wanted: impl Fn(usize) -> bool) -> Option<usize> {
+/// Index of the piece at `tick`, or of the nearest of `reach` neighbours on either side, that is wanted.
+fn near(tracks: &Tracks, track: TrackId, tick: i32, reach: usize, wanted: impl Fn(PieceId) -> bool) -> Option<usize> {
     let pieces = &tracks.tracks[track];
     let at = tracks.index_at(track, tick).min(pieces.len() - 1);
     let tick = tracks.fold(track, tick);
@@ -58,7 +58,7 @@ fn near(tracks: &Tracks, track: TrackId, tick: i32, reach: usize, wanted: impl F
         (p.begin - tick).max(tick - p.end).max(0)
     };
     let neighbours = at.saturating_sub(reach)..(at + reach + 1).min(pieces.len());
-    neighbours.filter(|&i| wanted(tracks.people_of(pieces[i]))).min_by_key(distance)
+    neighbours.filter(|&i| wanted(pieces[i])).min_by_key(distance)
 }
 
 /// Rips up windows of tracks, each widened by as many [`WINDOW`]s as are drawn, and bridges them another way, in random

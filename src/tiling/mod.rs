@@ -42,6 +42,7 @@ mod torsos;
 mod tracks;
 mod tryout;
 mod view;
+mod wang;
 
 #[cfg(test)]
 #[path = "../../tests/common/mod.rs"]
@@ -54,6 +55,6 @@ pub use engine::{tile, tile_in};
 pub use grid::Grid;
 pub use outcome::{Method, Options, Outcome, Phase, Progress, Status};
 pub use prefer::{Field, Form, Preference, Term};
-pub use scene::{KindFilter, Periodic, Placed, Scene, Sink, Source, Team};
+pub use scene::{KindFilter, Periodic, Placed, Scene, Sink, Source, Team, Wang};
 pub use session::{Review, Session, review};
 pub use study::study;

@@ -99,6 +99,29 @@ impl Occupancy {
         id
     }
 
+    /// Takes a piece in without a grid.
+    pub fn keep(&mut self, piece: Piece) -> PieceId {
+        self.pieces.push(Some(piece));
+        self.pieces.len() as PieceId - 1
+    }
+
+    /// The same pieces with a grid; without one as they were if they are too crowded for it.
+    pub fn opened(self, domain: &Domain, library: &Library) -> Result<Self, Box<Self>> {
+        let mut open = Self { pieces: self.pieces, free: self.free, ..Self::new(domain, library) };
+        match (0..open.pieces.len()).all(|id| open.show_if_room(id as PieceId)) {
+            true => Ok(open),
+            false => Err(Box::new(Self { cells: vec![], ..open })),
+        }
+    }
+
+    fn show_if_room(&mut self, id: PieceId) -> bool {
+        let room = self.get(id).is_none_or(|piece| self.has_room(piece));
+        if room && self.get(id).is_some() {
+            self.show(id);
+        }
+        room
+    }
+
     /// True if there is room in the grid for all bodies of a piece.
     pub fn has_room(&self, piece: &Piece) -> bool {
         let room = |(tick, at): (i32, Vec2)| (self.cells[self.cell_of(tick, at)].count as usize) < CELL_BODIES;

@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 use glam::Vec2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
 
 use super::bridge::{NO_INSTANCE, Port};
 use super::domain::Domain;
@@ -105,6 +106,15 @@ impl<'a> Passages<'a> {
         self.known[kind as usize][way as usize].get_or_init(|| {
             self.remembered(kind, way).unwrap_or_else(|| passages(self.library, &self.ground, kind, way, BRIEF))
         })
+    }
+
+    /// Works those of all kinds out, so that what is known does not depend on who asks first.
+    pub fn work_out_all(&self) {
+        let ways = |&kind: &u32| [(kind, Way::Come), (kind, Way::Stay), (kind, Way::Part)];
+        let all: Vec<(u32, Way)> = self.library.multi.iter().flat_map(ways).collect();
+        all.into_par_iter().with_max_len(1).for_each(|(kind, way)| {
+            self.of(kind, way);
+        });
     }
 
     /// The same if they are known.

@@ -61,7 +61,7 @@ pub(super) fn possible(scene: &Scene) -> Result<()> {
 }
 
 /// What a region is, if it is no rectangle along the axes.
-fn not_a_rectangle(region: &Polygon) -> Option<String> {
+pub(super) fn not_a_rectangle(region: &Polygon) -> Option<String> {
     let (low, high) = region.bounds();
     let is_corner = |p: &Vec2| [(p.x, low.x, high.x), (p.y, low.y, high.y)].iter().all(|(v, a, b)| v == a || v == b);
     if region.points.len() != 4 {

@@ -39,6 +39,8 @@ pub(super) struct Tracks<'a> {
     stamps: Vec<u64>,
     /// Ticks that people spend in patches of several.
     company: usize,
+    /// So many pieces were put in before all others; nothing moves them.
+    fixed: PieceId,
 }
 
 /// Instances of a change have numbers from here on, counted downwards, until it is made.
@@ -96,6 +98,7 @@ impl<'a> Tracks<'a> {
             version: 0,
             stamps: vec![],
             company: 0,
+            fixed: 0,
         }
     }
 
@@ -107,6 +110,51 @@ impl<'a> Tracks<'a> {
     /// Number of people in the piece's patch.
     pub fn people_of(&self, id: PieceId) -> usize {
         self.library.people_of(self.piece(id).role)
+    }
+
+    /// True if a piece is of one person only and may be taken out.
+    pub fn is_loose(&self, id: PieceId) -> bool {
+        !self.is_fixed(id) && self.people_of(id) == 1
+    }
+
+    /// True if nothing moves a piece.
+    pub fn is_fixed(&self, id: PieceId) -> bool {
+        id < self.fixed
+    }
+
+    /// Puts pieces in that nothing moves, before all others.
+    pub fn fix(&mut self, pieces: impl IntoIterator<Item = Piece>) -> Vec<PieceId> {
+        let pieces = pieces.into_iter();
+        let ids: Vec<PieceId> = pieces.map(|piece| self.put(piece)).collect();
+        self.fixed += ids.len() as PieceId;
+        ids
+    }
+
+    /// Puts a piece in as it is, as an instance of its own.
+    pub fn put(&mut self, piece: Piece) -> PieceId {
+        let instance = self.number(&mut vec![], NO_INSTANCE);
+        self.occupancy.insert(Piece { instance, ..piece })
+    }
+
+    /// People whose lives are known, seen by nobody until [`Tracks::opened`].
+    pub fn laid(library: &'a Library<'a>, domain: &'a Domain, people: Vec<Vec<Piece>>) -> Self {
+        let mut tracks = Self::on_open_ground(library, domain);
+        for pieces in people {
+            tracks.next_instance = pieces.iter().map(|p| p.instance + 1).fold(tracks.next_instance, u32::max);
+            let ids: Vec<PieceId> = pieces.into_iter().map(|piece| tracks.occupancy.keep(piece)).collect();
+            tracks.company += tracks.company_of(&ids);
+            tracks.set(NEWCOMER, ids);
+        }
+        tracks
+    }
+
+    /// The same people seen by searches; as they were if they are too crowded for that.
+    pub fn opened(self) -> Result<Self, Box<Self>> {
+        let (domain, library) = (self.domain, self.library);
+        match self.occupancy.opened(domain, library) {
+            Ok(occupancy) => Ok(Self { occupancy, ..self }),
+            Err(occupancy) => Err(Box::new(Self { occupancy: *occupancy, ..self })),
+        }
     }
 
     /// The port at which piece `index` of `track` begins; past the last piece, the port at which the track ends.
@@ -267,7 +315,7 @@ impl<'a> Tracks<'a> {
     /// people.
     pub fn widen(&self, window: Window, ticks: i32) -> Window {
         let Window { track, mut from, mut to } = window;
-        let single = |i: usize| self.people_of(self.tracks[track][i]) == 1;
+        let single = |i: usize| self.is_loose(self.tracks[track][i]);
         let (begin, end) = (self.port(track, from).tick - ticks, self.port(track, to).tick + ticks);
         while from > 0 && self.port(track, from).tick > begin && single(from - 1) {
             from -= 1;
@@ -280,12 +328,14 @@ impl<'a> Tracks<'a> {
 
     /// True if a person may have come from anywhere: was there before time began, and not in the place of a team.
     pub fn begins_open(&self, track: TrackId) -> bool {
-        !self.domain.cycle.loops() && self.port(track, 0).tick <= 0 && team_of(self, track).is_none()
+        let free = !self.domain.cycle.loops() && !self.is_fixed(self.tracks[track][0]);
+        free && self.port(track, 0).tick <= 0 && team_of(self, track).is_none()
     }
 
     /// True if a person may go anywhere: is still there when time ends.
     pub fn ends_open(&self, track: TrackId) -> bool {
-        !self.domain.cycle.loops() && self.port(track, self.tracks[track].len()).tick >= self.domain.horizon
+        let free = !self.domain.cycle.loops() && self.tracks[track].last().is_none_or(|&id| !self.is_fixed(id));
+        free && self.port(track, self.tracks[track].len()).tick >= self.domain.horizon
     }
 
     /// True if a person is there at a tick within the domain's time.

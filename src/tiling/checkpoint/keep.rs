@@ -36,6 +36,11 @@ impl<'a> Keeper<'a> {
         Self { keep: keep.map(|keep| (keep, about(keep))), due, problem: None }
     }
 
+    /// Writes none.
+    pub fn none() -> Self {
+        Self { keep: None, due: Instant::now(), problem: None }
+    }
+
     /// True if it is time for one.
     pub fn is_due(&self) -> bool {
         self.keep.is_some() && Instant::now() >= self.due

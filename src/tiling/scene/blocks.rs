@@ -2,10 +2,17 @@
 
 use glam::Vec2;
 
-use super::parts::{KindFilter, Periodic, Placed, Sink, Source, Team};
+use super::parts::{KindFilter, Periodic, Placed, Sink, Source, Team, Wang};
 use super::read::Section;
 use super::{MAX_CHARACTERS, MAX_SECS};
 use crate::geom::{Gate, Ground, Obstacle, Polygon, Waypoint};
+use crate::tiling::wang::{LARGEST_TILE, SMALLEST_TILE};
+
+/// Most colours of edges and variants of tiles, and how many there are unless a scene says it.
+const MAX_COLOURS: usize = 8;
+const COLOURS: usize = 2;
+const MAX_VARIANTS: usize = 64;
+const VARIANTS: usize = 4;
 
 /// Most people that one source lets in.
 const MAX_ARRIVALS: usize = 100_000;
@@ -123,6 +130,18 @@ pub(super) fn team(block: Section) -> Option<Team> {
     }
     block.finish();
     Some(Team { name: name?.to_owned(), characters: characters?, start: start?, heading })
+}
+
+/// `[wang]`.
+pub(super) fn wang(block: Section) -> Option<Wang> {
+    let tile = block.number("tile", SMALLEST_TILE..=LARGEST_TILE, " m");
+    if !block.has("tile") {
+        block.missing("tile", "the side of a tile in metres");
+    }
+    let colours = block.count("colours", 1..=MAX_COLOURS).unwrap_or(COLOURS);
+    let variants = block.count("variants", 1..=MAX_VARIANTS).unwrap_or(VARIANTS);
+    block.finish();
+    Some(Wang { tile: tile?, colours: colours as u32, variants: variants as u32 })
 }
 
 /// `kinds = { only = [...], without = [...] }`.

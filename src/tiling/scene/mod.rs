@@ -19,7 +19,7 @@ use crate::geom::{Obstacle, Polygon};
 use crate::motion::FPS;
 use crate::{Error, Result};
 
-pub use parts::{KindFilter, Periodic, Placed, Sink, Source, Team};
+pub use parts::{KindFilter, Periodic, Placed, Sink, Source, Team, Wang};
 
 /// What to tile: a domain open (cropped) in time, and wishes.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -52,6 +52,8 @@ pub struct Scene {
     pub rivals: Vec<String>,
     /// In which directions the domain repeats.
     pub periodic: Periodic,
+    /// How it is covered by tiles, if it is.
+    pub wang: Option<Wang>,
 }
 
 /// Longest scene accepted, in seconds.
@@ -79,6 +81,7 @@ impl Scene {
             teams: vec![],
             rivals: vec![],
             periodic: Periodic::default(),
+            wang: None,
         }
     }
 
@@ -169,7 +172,11 @@ fn read(file: Section) -> Option<Scene> {
     scene.teams = file.sections("team").into_iter().filter_map(blocks::team).collect();
     scene.rivals = file.texts("rivals");
     scene.periodic = blocks::periodic(&file);
+    scene.wang = file.section("wang").and_then(blocks::wang);
     teams_agree(&file, &scene);
+    if whole {
+        tiles_fit(&file, &scene);
+    }
     file.finish();
     whole.then_some(scene)
 }
@@ -205,6 +212,15 @@ fn teams_agree(file: &Section, scene: &Scene) {
     }
     if !scene.rivals.is_empty() && names.len() < 2 {
         file.bad(&file.span_of("rivals"), "rivals", "expected two teams or more");
+    }
+}
+
+/// The region is made of whole tiles, and nothing is asked for that tiles cannot have.
+fn tiles_fit(file: &Section, scene: &Scene) {
+    for (key, problem) in super::wang::problems(scene) {
+        // Walls are a list of their own.
+        let key = if key == "obstacle" && !file.has(key) { "obstacles" } else { key };
+        file.bad(&file.span_of(key), key, &problem);
     }
 }
 

@@ -39,6 +39,17 @@ pub struct Sink {
     pub gate: Gate,
 }
 
+/// The region is covered by tiles with coloured edges, each of which is worked out by itself.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Wang {
+    /// Side of a tile, metres.
+    pub tile: f32,
+    /// In how many ways people cross an edge.
+    pub colours: u32,
+    /// Tiles for the same four edges.
+    pub variants: u32,
+}
+
 /// A patch that the user put where it is: the rest is tiled around it.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Placed {
