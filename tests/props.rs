@@ -112,6 +112,7 @@ fn hand_over(tone: usize) -> Crowd {
         sinks: vec![],
         last_frame: last as u32,
         periodic: Default::default(),
+        teams: vec![],
     };
     let chains = chains.into_iter().chain([alone]).enumerate();
     let characters = chains.map(person).collect();
