@@ -53,6 +53,7 @@ pub struct Scene {
     /// In which directions the domain repeats.
     pub periodic: Periodic,
     /// How it is covered by tiles, if it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wang: Option<Wang>,
 }
 
