@@ -4,7 +4,8 @@
 
 use std::path::Path;
 
-use crowdquilt::tiling::{Options, Scene, tile};
+use crowdquilt::deform::Limits;
+use crowdquilt::tiling::{Options, Scene, study, tile};
 use crowdquilt::{check, patch, samples};
 
 fn main() -> crowdquilt::Result<()> {
@@ -16,8 +17,9 @@ fn main() -> crowdquilt::Result<()> {
     if args.len() < 3 {
         samples::write(&takes, seed)?;
     }
-    // 2. Cut motion patches out of the takes.
-    let set = patch::cut_folder(&takes, args.get(3).map(Path::new))?;
+    // 2. Cut motion patches out of the takes, and find out who can go on with what.
+    let mut set = patch::cut_folder(&takes, args.get(3).map(Path::new))?;
+    study(&mut set, Limits::default(), &|_| true)?;
     // 3. Tile a scene, the demo's unless there is another.
     let scene = args.get(4).map_or_else(|| Ok(Scene::demo()), |path| Scene::load(Path::new(path)))?;
     let options = Options { seed, ..Options::default() };
