@@ -56,7 +56,7 @@ pub(super) fn settle(draft: &mut Draft, taste: Taste, rng: &mut ChaCha8Rng) -> O
     let pieces = &tracks.tracks[track];
     let here = tracks.piece(pieces[0]).entry().position;
     let roams = |&id: &PieceId| tracks.piece(id).entry().position.distance(here) > ROAM;
-    let alone = |&id: &PieceId| tracks.people_of(id) == 1 && !tracks.piece(id).leaves_box();
+    let alone = |&id: &PieceId| tracks.is_loose(id) && !tracks.piece(id).leaves_box();
     let free = tracks.begins_open(track) && tracks.ends_open(track) && !is_laden(tracks, track);
     if !free || !pieces.iter().all(alone) || !pieces.iter().any(roams) {
         return None;

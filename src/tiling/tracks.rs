@@ -130,6 +130,11 @@ impl<'a> Tracks<'a> {
         ids
     }
 
+    /// Adds somebody whose pieces are in already.
+    pub fn enter(&mut self, ids: Vec<PieceId>) {
+        self.set(NEWCOMER, ids);
+    }
+
     /// Puts a piece in as it is, as an instance of its own.
     pub fn put(&mut self, piece: Piece) -> PieceId {
         let instance = self.number(&mut vec![], NO_INSTANCE);

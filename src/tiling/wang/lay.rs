@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::Vec2;
 
 use super::plane::{Key, Plane};
-use super::ribbon::Ribbons;
+use super::ribbon::{Crossing, Ribbons};
 use super::tile::{Gap, Stay, Tile, beyond, edge_of, of_side};
 use crate::tiling::bridge::NO_INSTANCE;
 use crate::tiling::piece::{Company, Piece, Shift};
@@ -34,7 +34,16 @@ impl Layout<'_> {
         }
         let mut numbers = numbers..;
         let starts = |&at: &[i64; 2]| self.tile(at).stays.iter().filter(|s| s.from.is_none()).map(move |s| (at, s));
-        places.iter().flat_map(starts).map(|(at, stay)| self.life(at, stay, &bases, &mut numbers)).collect()
+        let mut people: Vec<Vec<Piece>> =
+            places.iter().flat_map(starts).map(|(at, stay)| self.life(at, stay, &bases, &mut numbers)).collect();
+        // The upper borders of a tile are the lower ones of others.
+        for (&at, side) in places.iter().flat_map(|at| [(at, 1), (at, 3)]) {
+            let colour = self.plane.key(at).sides[side];
+            for dweller in colour.into_iter().flat_map(|colour| self.ribbons.dwellers(of_side(side).0, colour)) {
+                people.push(self.on_edge(at, side, dweller).zip(numbers.by_ref()).map(numbered).collect());
+            }
+        }
+        people
     }
 
     fn tile(&self, at: [i64; 2]) -> &Tile {
@@ -54,7 +63,7 @@ impl Layout<'_> {
             let (base, corner) = (bases[self.plane.index(at)], self.plane.corner(at));
             pieces.extend(stay.pieces.iter().map(|p| laid(p, corner, base)));
             let Some(gap) = stay.to else { return pieces };
-            pieces.extend(self.crossing(at, gap).zip(numbers.by_ref()).map(|(p, instance)| Piece { instance, ..p }));
+            pieces.extend(self.crossing(at, gap).zip(numbers.by_ref()).map(numbered));
             at = step(at, gap.side);
             let on = beyond(gap);
             stay = self.tile(at).stays.iter().find(|s| s.from == Some(on)).expect("neighbours agree on their edge");
@@ -66,9 +75,18 @@ impl Layout<'_> {
         let colour = self.plane.key(at).sides[gap.side].expect("nobody crosses the rim");
         let mut all = self.ribbons.of(of_side(gap.side).0, colour);
         let crossing = all.nth(gap.number).expect("as many as the tile knows");
-        let place = self.plane.corner(at) + edge_of(gap.side, self.side);
-        crossing.pieces.iter().map(move |p| p.clone().shifted(Shift { place, ticks: 0 }))
+        self.on_edge(at, gap.side, crossing)
     }
+
+    /// What somebody does on an edge of a tile.
+    fn on_edge<'s>(&self, at: [i64; 2], side: usize, of: &'s Crossing) -> impl Iterator<Item = Piece> + use<'s> {
+        let place = self.plane.corner(at) + edge_of(side, self.side);
+        of.pieces.iter().map(move |p| p.clone().shifted(Shift { place, ticks: 0 }))
+    }
+}
+
+fn numbered((piece, instance): (Piece, u32)) -> Piece {
+    Piece { instance, ..piece }
 }
 
 /// The tile beyond a side.

@@ -48,7 +48,15 @@ const TASTE: Taste = Taste { calm: 1.0, expansions: 60 };
 /// Ways across that are tried for each that is wanted.
 const TRIES: usize = 2000;
 
-/// Somebody who crosses an edge whose lower end is at the origin.
+/// So many people per metre of an edge and per person per m^2 stand on it all the time: others keep off it, and it would
+/// be seen.
+const DWELLERS: f32 = 0.5;
+/// How far from the border they stand, how far they move about, metres, and how slow their patches are, m/s.
+const NEAR: f32 = 0.35;
+const ASTIR: f32 = 0.4;
+const CALM: f32 = 0.25;
+
+/// Somebody who crosses an edge whose lower end is at the origin, or stands on it all the time.
 pub(super) struct Crossing {
     /// The patches, in order of time.
     pub pieces: Vec<Piece>,
@@ -56,6 +64,8 @@ pub(super) struct Crossing {
     pub leads: [Vec<Piece>; 2],
     /// True if towards larger coordinates.
     pub forward: bool,
+    /// True if they stand.
+    dwells: bool,
     across: Across,
     colour: u32,
 }
@@ -116,11 +126,35 @@ impl Ribbons {
                 ribbons.all.push(found.ok_or_else(|| no_room(side, count))?);
             }
         }
+        ribbons.settle(&drawing, one, colours, seed);
         Ok(ribbons)
+    }
+
+    /// Lets people stand on all edges, where there is room.
+    fn settle(&mut self, drawing: &Drawing, one: &Scene, colours: u32, seed: u64) {
+        let density = one.characters as f32 / one.region.area();
+        let count = (DWELLERS * density * drawing.side).round() as usize;
+        for (colour, across) in (0..colours).flat_map(|c| [(c, Across::X), (c, Across::Z)]) {
+            let mut rng = ChaCha8Rng::seed_from_u64(mix(mix(!seed ^ u64::from(colour)) ^ across as u64));
+            for _ in 0..count {
+                let fits = |c: &Crossing| self.have_room(c, drawing.side, drawing.library);
+                let found = (0..TRIES).find_map(|_| drawing.dweller((across, colour), &mut rng).filter(fits));
+                self.all.extend(found);
+            }
+        }
     }
 
     /// The ways across an edge.
     pub fn of(&self, across: Across, colour: u32) -> impl Iterator<Item = &Crossing> + Clone {
+        self.on(across, colour).filter(|c| !c.dwells)
+    }
+
+    /// Who stands on an edge.
+    pub fn dwellers(&self, across: Across, colour: u32) -> impl Iterator<Item = &Crossing> + Clone {
+        self.on(across, colour).filter(|c| c.dwells)
+    }
+
+    fn on(&self, across: Across, colour: u32) -> impl Iterator<Item = &Crossing> + Clone {
         self.all.iter().filter(move |c| c.across == across && c.colour == colour)
     }
 
@@ -220,13 +254,42 @@ impl Drawing<'_> {
             Across::Z => Vec2::new(along, beside),
         };
         let from = Ground::new(on_border - Ground::new(Vec2::ZERO, heading).apply(middle), heading);
-        let mut crossing =
-            Crossing { pieces: self.lay(&roles, from, begin), leads: Default::default(), forward, across, colour };
+        let mut crossing = Crossing {
+            pieces: self.lay(&roles, from, begin),
+            leads: Default::default(),
+            forward,
+            dwells: false,
+            across,
+            colour,
+        };
         if !self.is_across(&crossing) || !self.is_clean(&crossing) {
             return None;
         }
         crossing.leads = self.leads(&crossing, rng)?;
         Some(crossing)
+    }
+
+    /// Somebody who stands somewhere on an edge from the beginning of time to its end, if that is possible as drawn.
+    fn dweller(&self, (across, colour): (Across, u32), rng: &mut ChaCha8Rng) -> Option<Crossing> {
+        let mut chain = vec![*self.walks.iter().filter(|m| m.speed < CALM).copied().collect::<Vec<_>>().choose(rng)?];
+        let begin = -rng.random_range(0..chain[0].ticks);
+        let mut end = begin + chain[0].ticks;
+        while end < self.grounds.open.horizon {
+            let group = chain[chain.len() - 1].group;
+            let follows = |m: &&&Move| m.speed < CALM && self.library.roles[m.role as usize].entry_group == group;
+            let next = *self.walks.iter().filter(follows).collect::<Vec<_>>().choose(rng)?;
+            chain.push(next);
+            end += next.ticks;
+        }
+        let (along, beside) = (rng.random_range(0.0..self.side), rng.random_range(-NEAR..NEAR));
+        let at = match across {
+            Across::X => Vec2::new(beside, along),
+            Across::Z => Vec2::new(along, beside),
+        };
+        let pieces = self.lay(&chain, Ground::new(at, rng.random_range(-PI..PI)), begin);
+        let stays = pieces.iter().all(|p| p.exit().position.distance(at) < ASTIR);
+        let crossing = Crossing { pieces, leads: Default::default(), forward: true, dwells: true, across, colour };
+        (stays && self.is_within(&crossing) && self.is_clean(&crossing)).then_some(crossing)
     }
 
     /// A way to where a crossing begins, and one from where it ends.
@@ -281,26 +344,26 @@ impl Drawing<'_> {
     /// True if it begins on one side and ends on the other, and comes to no other tiles than these two.
     fn is_across(&self, crossing: &Crossing) -> bool {
         let sign = if crossing.forward { 1.0 } else { -1.0 };
-        let split = |v: Vec2| match crossing.across {
-            Across::X => (v.y, v.x * sign),
-            Across::Z => (v.x, v.y * sign),
-        };
-        let half = self.side * 0.5;
-        let sides = |along: f32, room: f32| along > room && along < self.side - room;
+        let beyond = |place: Vec2| split(place, crossing.across).1 * sign;
         let last = crossing.pieces.len() - 1;
         let (entry, exit) = (crossing.pieces[0].entry(), crossing.pieces[last].exit());
         let reach = self.library.max_reach.min(0.6) + END_ROOM;
-        let ends = split(entry.position).1 < -reach && split(exit.position).1 > reach;
+        beyond(entry.position) < -reach && beyond(exit.position) > reach && self.is_within(crossing)
+    }
+
+    /// True if it comes to no other tiles than the two that the edge joins.
+    fn is_within(&self, crossing: &Crossing) -> bool {
+        let sides = |along: f32, room: f32| along > room && along < self.side - room;
         let inside = |piece: &Piece| {
             piece.bodies.iter().all(|body| {
                 let discs = world_discs(body, footprint(self.library, piece.role, body));
                 discs.iter().all(|d| {
-                    let (along, depth) = split(d.truncate());
-                    sides(along, d.z + SIDE_ROOM) && depth.abs() + d.z < half
+                    let (along, depth) = split(d.truncate(), crossing.across);
+                    sides(along, d.z + SIDE_ROOM) && depth.abs() + d.z < self.side * 0.5
                 })
             })
         };
-        ends && crossing.pieces.iter().all(inside)
+        crossing.pieces.iter().all(inside)
     }
 
     /// True if it is walked as people can.
@@ -311,5 +374,13 @@ impl Drawing<'_> {
         let ids = crossing.pieces.iter().map(|p| draft.add(p.clone())).collect();
         draft.push_track(ids);
         is_clean(&draft)
+    }
+}
+
+/// How far along an edge, and beyond it, a place is.
+fn split(place: Vec2, across: Across) -> (f32, f32) {
+    match across {
+        Across::X => (place.y, place.x),
+        Across::Z => (place.x, place.y),
     }
 }

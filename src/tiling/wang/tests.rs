@@ -113,7 +113,12 @@ fn everybody_but_those_who_cross_stays_in_the_tile() {
         let come = tile.stays.iter().filter(|s| s.from.is_some()).count();
         let go = tile.stays.iter().filter(|s| s.to.is_some()).count();
         assert!(come > 0 && come == go);
-        assert_eq!(tile.stays.len(), shop.scene.characters + go);
+        // Who stands on a border is half in this tile.
+        let dwellers = shop.dwellers(key);
+        assert!(!dwellers.is_empty());
+        assert_eq!(tile.stays.len(), shop.scene.characters + go - dwellers.len() / 2);
+        let all_the_time = |d: &Vec<Piece>| d[0].begin <= 0 && d[d.len() - 1].end >= domain.horizon;
+        assert!(dwellers.iter().all(all_the_time));
     });
 }
 

@@ -111,11 +111,21 @@ impl Workshop<'_> {
         })
     }
 
-    /// How many people are in a tile who cross none of its borders.
-    fn residents(&self, key: Key) -> usize {
+    /// The patches of those who stand on the borders of a tile.
+    pub fn dwellers(&self, key: Key) -> Vec<Vec<Piece>> {
+        let of = |side: usize| {
+            let shift = Shift { place: edge_of(side, self.side), ticks: 0 };
+            let put = move |c: &Crossing| c.pieces.iter().map(|p| p.clone().shifted(shift)).collect();
+            key.sides[side].into_iter().flat_map(move |colour| self.ribbons.dwellers(of_side(side).0, colour)).map(put)
+        };
+        (0..SIDES).flat_map(of).collect()
+    }
+
+    /// How many people are in a tile besides those on its borders.
+    fn residents(&self, key: Key, dwellers: usize) -> usize {
         // Half of each crossing's life is here.
-        let visitors = self.crossings(key).count() / 2;
-        self.scene.characters.saturating_sub(visitors)
+        let others = (self.crossings(key).count() + dwellers) / 2;
+        self.scene.characters.saturating_sub(others)
     }
 
     /// Works a tile out.
@@ -124,14 +134,18 @@ impl Workshop<'_> {
     /// Somebody who crosses its borders finds no way.
     pub fn build(&self, key: Key, secs: f64) -> Result<Tile> {
         let mut crossings: Vec<Visit> = self.crossings(key).map(|(gap, c)| self.visit(gap, c)).collect();
-        let domain = Domain::new(self.scene)?.crossed_by(crossings.iter().map(|c| places(&c.pieces)).collect());
+        let dwellers = self.dwellers(key);
+        let on_border = crossings.iter().map(|c| &c.pieces).chain(&dwellers).map(|pieces| places(pieces));
+        let domain = Domain::new(self.scene)?.crossed_by(on_border.collect());
         for again in 0..SEEDS {
             let mut tracks = Tracks::new(self.library, &domain);
             let mut go_on = |_: &Progress| true;
+            let standing: Vec<Vec<PieceId>> = dwellers.iter().map(|d| tracks.fix(d.iter().cloned())).collect();
             let crossers = self.crossers(&mut tracks, &crossings);
+            standing.into_iter().for_each(|ids| tracks.enter(ids));
             let (seed, clock) =
                 ((key.seed(self.seed.wrapping_add(again)), again < PICKY), Clock::new(secs, &mut go_on));
-            let people = (crossers.as_slice(), self.residents(key));
+            let people = (crossers.as_slice(), dwellers.len() + self.residents(key, dwellers.len()));
             match fill(self.scene, self.passages, tracks, people, seed, clock) {
                 Ok(tracks) => return Ok(finished(&tracks, &crossers)),
                 // Who found no way comes first next time.
@@ -207,7 +221,9 @@ fn finished(tracks: &Tracks, crossers: &[Crosser]) -> Tile {
         pieces: ids.iter().filter(|&&id| !tracks.is_fixed(id)).map(|&id| tracks.piece(id).clone()).collect(),
         to: gap(ids.last(), false),
     };
-    let stays: Vec<Stay> = tracks.tracks.iter().map(stay).collect();
+    // Who stands on a border belongs to two tiles.
+    let is_own = |s: &Stay| s.from.is_some() || s.to.is_some() || !s.pieces.is_empty();
+    let stays: Vec<Stay> = tracks.tracks.iter().map(stay).filter(is_own).collect();
     let instances = stays.iter().flat_map(|s| &s.pieces).map(|p| p.instance + 1).max().unwrap_or(0);
     Tile { stays, instances }
 }
