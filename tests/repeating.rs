@@ -62,6 +62,17 @@ fn every_combination_is_tiled_without_a_seam() {
 }
 
 #[test]
+fn patches_that_began_before_time_did_find_people_in_any_tile() {
+    // More company than there can be: it is looked for everywhere, at the first tick too.
+    let scene = Scene { interaction: 1.0, ..scene("xz") };
+    for seed in 1..4 {
+        let options = Options { seed, time_secs: 4.0, ..Options::default() };
+        let crowd = tile(&scene, &SAMPLES, &options, &mut |_| true).unwrap().crowd;
+        assert!(crowd.instances.len() > 50, "seed {seed}");
+    }
+}
+
+#[test]
 fn borders_are_crossed_and_laps_go_on_in_the_midst_of_things() {
     let crowd = &*TILE;
     let (low, high) = crowd.domain.region.bounds();

@@ -182,7 +182,9 @@ fn player(
     candidates.sort_unstable();
     while !candidates.is_empty() {
         let track = candidates.swap_remove(rng.random_range(0..candidates.len()));
-        let shift = tracks.shift_to(track, entry);
+        // Before the first tick nobody is anywhere.
+        let seen = if tracks.domain.cycle.loops() { entry.tick } else { tick };
+        let shift = tracks.shift_to(track, entry, seen);
         let (entry, heir) = (shift.port(*entry), shift.port(*heir));
         if !tracks.spans(track, entry.tick, shift.port(*exit).tick) {
             continue;

@@ -369,10 +369,10 @@ impl<'a> Tracks<'a> {
         self.domain.cycle.fold(tick, self.piece(self.tracks[track][0]).begin)
     }
 
-    /// What a port is for a person who is near it.
-    pub fn shift_to(&self, track: TrackId, port: &Port) -> Shift {
+    /// What a port is for a person who is near it, and there at tick `seen`.
+    pub fn shift_to(&self, track: TrackId, port: &Port, seen: i32) -> Shift {
         let tick = self.fold(track, port.tick);
-        let near = |torus: Torus| torus.whole(self.state_at(track, tick).position - port.at.position);
+        let near = |torus: Torus| torus.whole(self.state_at(track, seen).position - port.at.position);
         let place = if self.domain.torus.is_plane() { Vec2::ZERO } else { near(self.domain.torus) };
         Shift { place, ticks: tick - port.tick }
     }
