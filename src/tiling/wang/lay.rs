@@ -6,7 +6,7 @@ use glam::Vec2;
 
 use super::plane::{Key, Plane};
 use super::ribbon::{Crossing, Ribbons};
-use super::tile::{Gap, Stay, Tile, beyond, edge_of, of_side};
+use super::tile::{Gap, Stay, Tile, UPPER_SIDES, beyond, edge_of, of_side};
 use crate::tiling::bridge::NO_INSTANCE;
 use crate::tiling::piece::{Company, Piece, Shift};
 
@@ -37,7 +37,7 @@ impl Layout<'_> {
         let mut people: Vec<Vec<Piece>> =
             places.iter().flat_map(starts).map(|(at, stay)| self.life(at, stay, &bases, &mut numbers)).collect();
         // The upper borders of a tile are the lower ones of others.
-        for (&at, side) in places.iter().flat_map(|at| [(at, 1), (at, 3)]) {
+        for (&at, side) in places.iter().flat_map(|at| UPPER_SIDES.map(|side| (at, side))) {
             let colour = self.plane.key(at).sides[side];
             for dweller in colour.into_iter().flat_map(|colour| self.ribbons.dwellers(of_side(side).0, colour)) {
                 people.push(self.on_edge(at, side, dweller).zip(numbers.by_ref()).map(numbered).collect());

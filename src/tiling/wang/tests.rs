@@ -1,4 +1,4 @@
-use super::tile::{edge_of, of_side};
+use super::tile::{UPPER_SIDES, edge_of, of_side};
 use super::*;
 use crate::motion::canonical;
 use crate::refine::{Body, refine_all};
@@ -113,10 +113,10 @@ fn everybody_but_those_who_cross_stays_in_the_tile() {
         let come = tile.stays.iter().filter(|s| s.from.is_some()).count();
         let go = tile.stays.iter().filter(|s| s.to.is_some()).count();
         assert!(come > 0 && come == go);
-        // Who stands on a border is half in this tile.
-        let dwellers = shop.dwellers(key);
+        // Who stands on an upper border is counted in this tile, and belongs to two.
+        let dwellers = shop.dwellers(key, &UPPER_SIDES);
         assert!(!dwellers.is_empty());
-        assert_eq!(tile.stays.len(), shop.scene.characters + go - dwellers.len() / 2);
+        assert_eq!(tile.stays.len(), shop.scene.characters + go - dwellers.len());
         let all_the_time = |d: &Vec<Piece>| d[0].begin <= 0 && d[d.len() - 1].end >= domain.horizon;
         assert!(dwellers.iter().all(all_the_time));
     });

@@ -23,6 +23,9 @@ const SEEDS: u64 = 16;
 /// So many of them are tried for one whose people meet often.
 const PICKY: u64 = 8;
 
+/// The sides at the upper ends of a tile.
+pub(super) const UPPER_SIDES: [usize; 2] = [1, 3];
+
 /// Where somebody crosses a tile's border: the side and which of its colour's ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::tiling) struct Gap {
@@ -111,20 +114,20 @@ impl Workshop<'_> {
         })
     }
 
-    /// The patches of those who stand on the borders of a tile.
-    pub fn dwellers(&self, key: Key) -> Vec<Vec<Piece>> {
-        let of = |side: usize| {
+    /// The patches of those who stand on some sides of a tile.
+    pub fn dwellers(&self, key: Key, sides: &[usize]) -> Vec<Vec<Piece>> {
+        let of = |&side: &usize| {
             let shift = Shift { place: edge_of(side, self.side), ticks: 0 };
             let put = move |c: &Crossing| c.pieces.iter().map(|p| p.clone().shifted(shift)).collect();
             key.sides[side].into_iter().flat_map(move |colour| self.ribbons.dwellers(of_side(side).0, colour)).map(put)
         };
-        (0..SIDES).flat_map(of).collect()
+        sides.iter().flat_map(of).collect()
     }
 
     /// How many people are in a tile besides those on its borders.
-    fn residents(&self, key: Key, dwellers: usize) -> usize {
-        // Half of each crossing's life is here.
-        let others = (self.crossings(key).count() + dwellers) / 2;
+    fn residents(&self, key: Key) -> usize {
+        // Half of each crossing's life is here; who stands on an upper border counts as one of this tile.
+        let others = self.crossings(key).count() / 2 + self.dwellers(key, &UPPER_SIDES).len();
         self.scene.characters.saturating_sub(others)
     }
 
@@ -134,7 +137,7 @@ impl Workshop<'_> {
     /// Somebody who crosses its borders finds no way.
     pub fn build(&self, key: Key, secs: f64) -> Result<Tile> {
         let mut crossings: Vec<Visit> = self.crossings(key).map(|(gap, c)| self.visit(gap, c)).collect();
-        let dwellers = self.dwellers(key);
+        let dwellers = self.dwellers(key, &[0, 1, 2, 3]);
         let on_border = crossings.iter().map(|c| &c.pieces).chain(&dwellers).map(|pieces| places(pieces));
         let domain = Domain::new(self.scene)?.crossed_by(on_border.collect());
         for again in 0..SEEDS {
@@ -145,7 +148,7 @@ impl Workshop<'_> {
             standing.into_iter().for_each(|ids| tracks.enter(ids));
             let (seed, clock) =
                 ((key.seed(self.seed.wrapping_add(again)), again < PICKY), Clock::new(secs, &mut go_on));
-            let people = (crossers.as_slice(), dwellers.len() + self.residents(key, dwellers.len()));
+            let people = (crossers.as_slice(), dwellers.len() + self.residents(key));
             match fill(self.scene, self.passages, tracks, people, seed, clock) {
                 Ok(tracks) => return Ok(finished(&tracks, &crossers)),
                 // Who found no way comes first next time.
