@@ -41,6 +41,36 @@ pub(super) fn admitted<'a>(scene: &Scene, set: &'a PatchSet, method: Method) -> 
     Ok(Cow::Owned(some))
 }
 
+/// Refuses a set with which no tiling can be perfect: it is not sound or empty, or some pose group can be entered but never
+/// left by people alone, or the other way round.
+pub(super) fn check_set(set: &PatchSet) -> Result<()> {
+    if let Some(problem) = set.validate().into_iter().next() {
+        return Err(problem);
+    }
+    if set.kinds.is_empty() {
+        return Err(Error::invalid("patch set", "kinds", "expected at least one kind, found none"));
+    }
+    let single = |k: &&crate::patch::PatchKind| k.people() == 1;
+    let singles = || set.kinds.iter().filter(single).flat_map(|k| &k.fragments);
+    for kind in &set.kinds {
+        for (role, f) in kind.fragments.iter().enumerate() {
+            let name = |group: u32| &set.groups[group as usize].name;
+            let place = || format!("kind {}, role {role}", kind.name);
+            if !singles().any(|s| s.entry_group == f.exit_group) {
+                let problem =
+                    format!("no single-person kind can follow its exit in pose group {:?}", name(f.exit_group));
+                return Err(Error::invalid("patch set", place(), problem));
+            }
+            if !singles().any(|s| s.exit_group == f.entry_group) {
+                let problem =
+                    format!("no single-person kind can lead to its entry in pose group {:?}", name(f.entry_group));
+                return Err(Error::invalid("patch set", place(), problem));
+            }
+        }
+    }
+    Ok(())
+}
+
 fn has(kind: &PatchKind, label: &str) -> bool {
     kind.labels.iter().any(|l| l == label)
 }

@@ -4,16 +4,15 @@
 //! several people where people pass near each other and bridges the ripped tracks again. Mend tests the final bodies.
 //! All four propose whole changes that a [`Crew`] works out side by side (recipe and reasons: ARCHITECTURE.md).
 
-use std::time::{Duration, Instant};
-
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::bake::{Chains, bake};
 use super::bridge::Taste;
 use super::checkpoint::{About, Agenda, Checkpoint, Keep, Keeper, Stage, thaw};
+use super::clock::Clock;
 use super::crew::Crew;
-use super::demands::admitted;
+use super::demands::{admitted, check_set};
 use super::domain::Domain;
 use super::draft::Draft;
 use super::enrich::enrich;
@@ -103,10 +102,6 @@ const TILE_REFILLS: usize = 1;
 const TILE_COMPANY: f32 = 0.85;
 /// Rounds of mending.
 const MEND_ROUNDS: usize = 30;
-/// How fast a long step of a run is forgotten when others are shorter.
-const STEPS_FADE: f64 = 0.9;
-/// Time between two reports of progress.
-const REPORT_EVERY: Duration = Duration::from_millis(50);
 
 /// Tiles a scene with a patch set.
 ///
@@ -161,91 +156,6 @@ pub fn tile_in(
             Err(Error::invalid("checkpoint", "method", "expected the engine: the paper's algorithms keep none"))
         }
         Method::Paper => Ok(paper::tile(scene, set, &domain, options, progress)),
-    }
-}
-
-fn check_set(set: &PatchSet) -> Result<()> {
-    if let Some(problem) = set.validate().into_iter().next() {
-        return Err(problem);
-    }
-    if set.kinds.is_empty() {
-        return Err(Error::invalid("patch set", "kinds", "expected at least one kind, found none"));
-    }
-    let single = |k: &&crate::patch::PatchKind| k.people() == 1;
-    let singles = || set.kinds.iter().filter(single).flat_map(|k| &k.fragments);
-    for kind in &set.kinds {
-        for (role, f) in kind.fragments.iter().enumerate() {
-            let name = |group: u32| &set.groups[group as usize].name;
-            let place = || format!("kind {}, role {role}", kind.name);
-            if !singles().any(|s| s.entry_group == f.exit_group) {
-                let problem =
-                    format!("no single-person kind can follow its exit in pose group {:?}", name(f.exit_group));
-                return Err(Error::invalid("patch set", place(), problem));
-            }
-            if !singles().any(|s| s.exit_group == f.entry_group) {
-                let problem =
-                    format!("no single-person kind can lead to its entry in pose group {:?}", name(f.entry_group));
-                return Err(Error::invalid("patch set", place(), problem));
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Reports progress now and then and knows when to stop.
-pub(super) struct Clock<'a> {
-    start: Instant,
-    last_report: Instant,
-    limit: Duration,
-    /// Seconds of it that are to be left for what comes later.
-    reserve: f64,
-    /// When it was asked last, and how long a step takes from one time to the next, seconds.
-    asked: Instant,
-    step: f64,
-    stopped: bool,
-    progress: &'a mut dyn FnMut(&Progress) -> bool,
-}
-
-impl<'a> Clock<'a> {
-    pub(super) fn new(limit_secs: f64, progress: &'a mut dyn FnMut(&Progress) -> bool) -> Self {
-        let now = Instant::now();
-        Self {
-            start: now,
-            last_report: now,
-            limit: Duration::from_secs_f64(limit_secs.max(0.0)),
-            reserve: 0.0,
-            asked: now,
-            step: 0.0,
-            stopped: false,
-            progress,
-        }
-    }
-
-    /// False once time is up or the caller has had enough.
-    pub(super) fn goes_on(&mut self, state: impl FnOnce() -> Progress) -> bool {
-        let now = Instant::now();
-        self.step = (now - self.asked).as_secs_f64().max(self.step * STEPS_FADE);
-        self.asked = now;
-        if !self.stopped && now - self.last_report >= REPORT_EVERY {
-            self.last_report = now;
-            let secs = self.secs();
-            self.stopped = !(self.progress)(&Progress { secs, ..state() });
-        }
-        !self.is_over()
-    }
-
-    /// True once time is up or the caller has had enough.
-    pub(super) fn is_over(&self) -> bool {
-        self.stopped || self.secs() + self.step + self.reserve >= self.limit.as_secs_f64()
-    }
-
-    /// Part of the time that has gone.
-    fn gone(&self) -> f64 {
-        self.secs() / self.limit.as_secs_f64().max(1e-9)
-    }
-
-    pub(super) fn secs(&self) -> f64 {
-        self.start.elapsed().as_secs_f64()
     }
 }
 

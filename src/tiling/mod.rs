@@ -6,6 +6,7 @@ mod boxes;
 mod bridge;
 mod builds;
 mod checkpoint;
+mod clock;
 mod crew;
 mod demands;
 mod domain;

@@ -4,7 +4,7 @@ use glam::Vec2;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::super::engine::Clock;
+use super::super::clock::Clock;
 use super::super::outcome::Phase;
 use super::patchwork::{Patchwork, Placement, Proposal};
 use super::ports::Reach;

@@ -50,7 +50,7 @@ fn books_are_right_after_insertions_and_removals() {
     let mut tiling = Patchwork::new(&library, &domain);
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     let mut clock_progress = |_: &Progress| true;
-    let mut clock = crate::tiling::engine::Clock::new(1000.0, &mut clock_progress);
+    let mut clock = crate::tiling::clock::Clock::new(1000.0, &mut clock_progress);
     super::super::anneal::anneal(&mut tiling, 150, &prefer::preference(&library), &mut clock, &mut rng);
     audit(&tiling);
     let mut proposal = Proposal::default();

@@ -7,7 +7,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::super::bridge::Port;
-use super::super::engine::Clock;
+use super::super::clock::Clock;
 use super::super::outcome::Phase;
 use super::patchwork::{Patchwork, Placement, Proposal};
 use super::ports::{EXIT, PortId, Reach};
