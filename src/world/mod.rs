@@ -28,6 +28,7 @@
 //! | `template.rs`, `plan.rs`, `furnish.rs` | what patches contain, which is where, the world that follows |
 //! | `area/` | worlds from walkable polygons: repaired, cut into convex cells |
 //! | `scene.rs` | scene files: templates, and a map in characters or a picture |
+//! | `survey.rs`, `site.rs`, `shard.rs` | a build in pieces: which patches there are to solve, in any order and by anybody; files of some of them |
 //! | `gait.rs` | walking cycles out of captures, and steps for everybody |
 //! | `stream.rs` | an endless world around a camera |
 //! | `scenes.rs`, `measure.rs` | the street and the city of the paper; how long patches take |
@@ -52,9 +53,12 @@ mod route;
 mod scene;
 pub mod scenes;
 mod shape;
+mod shard;
+mod site;
 mod solve;
 mod spacing;
 mod stream;
+mod survey;
 mod template;
 mod valid;
 
@@ -73,6 +77,8 @@ pub use pattern::{Crossing, Pattern, balanced};
 pub use plan::Plan;
 pub use scene::{Layout, WorldScene};
 pub use shape::Shape;
+pub use shard::Shard;
+pub use site::Site;
 pub use solve::{Common, Method, Options, Solution, solve, vary};
 pub use stream::Stream;
 pub use template::{Amount, Furnishing, Gathering, Prototype, Template};

@@ -3,7 +3,6 @@
 //! "Crowd Patches" (2009), sections 5.1 and 5.2. Every patch is a function of the plan, the seed and its place alone: patches
 //! can be made in any order, by any process, now or when a camera comes near, and are always the same.
 
-use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::Vec2;
@@ -12,6 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use super::lattice::rectangle;
+use super::survey::Survey;
 use super::{Common, CrowdPatch, FramePatch, Lattice, Limits, Options, Pattern, PatternType, Template, solve, vary};
 use crate::stage::world::mix;
 use crate::{Error, Result};
@@ -181,7 +181,7 @@ impl Plan {
     }
 
     /// What decides all of a cell: cells of the same key have the same patch.
-    fn cell_key(&self, column: usize, row: usize) -> u64 {
+    pub(super) fn cell_key(&self, column: usize, row: usize) -> u64 {
         let (columns, rows) = self.size();
         let (left, below) = ((column + columns - 1) % columns, (row + rows - 1) % rows);
         let borders = [(column, below, 2), (column, row, 1), (column, row, 2), (left, row, 1)];
@@ -274,24 +274,14 @@ impl Plan {
     /// # Errors
     /// As [`Self::patch`], and if it was stopped.
     pub fn build_watched(&self, progress: &(dyn Fn(usize, usize) -> bool + Sync)) -> Result<Lattice> {
-        self.validate()?;
-        let (columns, rows) = self.size();
-        let (mut index, mut first) = (BTreeMap::new(), Vec::new());
-        let mut cells = Vec::with_capacity(columns * rows);
-        for cell in 0..columns * rows {
-            let kind = *index.entry(self.cell_key(cell % columns, cell / columns)).or_insert_with(|| {
-                first.push(cell);
-                first.len() - 1
-            });
-            cells.push(kind);
-        }
+        let survey = Survey::new(self)?;
         let done = AtomicUsize::new(0);
-        let make = |&cell: &usize| {
-            let patch = self.patch(cell % columns, cell / columns)?;
+        let make = |kind: usize| {
+            let patch = survey.solve(self, kind)?;
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if progress(done, first.len()) { Ok(patch) } else { Err(Error::Stopped) }
+            if progress(done, survey.kinds()) { Ok(patch) } else { Err(Error::Stopped) }
         };
-        let kinds: Result<Vec<CrowdPatch>> = first.par_iter().map(make).collect();
-        Lattice::shared(columns, rows, Vec2::splat(self.side), kinds?, cells)
+        let kinds: Result<Vec<CrowdPatch>> = (0..survey.kinds()).into_par_iter().map(make).collect();
+        survey.join(self, kinds?)
     }
 }

@@ -13,12 +13,12 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::{Amount, Area, Built, Coordinates, Furnishing, Gathering, Plan, Prototype, Template};
+use super::{Amount, Area, Built, Coordinates, Furnishing, Gathering, Plan, Prototype, Site, Template};
 use crate::{Error, Result};
 use border::BorderText;
 
 /// A world to build.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct WorldScene {
     /// What it is called.
     pub name: String,
@@ -27,7 +27,7 @@ pub struct WorldScene {
 }
 
 /// What is where.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Layout {
     /// Templates on a grid.
     Map(Plan),
@@ -206,13 +206,11 @@ impl WorldScene {
     /// # Errors
     /// As [`Plan::build`] and [`Area::build`].
     pub fn build(&self, progress: &(dyn Fn(usize, usize) -> bool + Sync)) -> Result<Built> {
-        match &self.layout {
-            Layout::Map(plan) => {
-                let world = plan.bake(&self.name, &plan.build_watched(progress)?)?;
-                Ok(Built { world, notes: Vec::new() })
-            }
-            Layout::Area(area) => area.build(&self.name, progress),
+        let mut site = Site::new(self)?;
+        while !site.left().is_empty() {
+            site.work(progress)?;
         }
+        site.bake()
     }
 
     /// A scene from a TOML file; a scene without a name is called as its file.

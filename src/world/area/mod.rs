@@ -12,12 +12,13 @@ mod solve;
 
 use std::path::Path;
 
-use super::Template;
+use super::{Layout, Template, WorldScene};
+pub(super) use solve::Works;
 use crate::stage::World;
 use crate::{Error, Result};
 
 /// Walkable ground and who is on it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Area {
     /// The templates; ground that names none is of the first.
     pub templates: Vec<Template>,
@@ -32,7 +33,7 @@ pub struct Area {
 }
 
 /// A walkable polygon as a file says it: perhaps broken.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Ground {
     /// Which template it is of.
     pub template: usize,
@@ -83,10 +84,7 @@ impl Area {
     /// # Errors
     /// If nothing walkable is left, the area is too large, or it was stopped.
     pub fn build(&self, name: &str, progress: &(dyn Fn(usize, usize) -> bool + Sync)) -> Result<Built> {
-        let mut notes = Vec::new();
-        let walkable = repair::repair(&self.grounds, self.side.into(), &mut notes)?;
-        let mesh = cells::cut(&walkable, self.side.into(), &mut notes)?;
-        let world = solve::world(self, name, &mesh, &mut notes, progress)?;
-        Ok(Built { world, notes })
+        let layout = Layout::Area(self.clone());
+        WorldScene { name: name.into(), layout }.build(progress)
     }
 }

@@ -1,16 +1,14 @@
-//! Cells become patches: furnished, solved in parallel, calmed where no way is found, joined and baked.
+//! Cells become patches: furnished, solved in any order, calmed where no way is found, joined and baked.
 
 use std::collections::BTreeSet;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec2;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 
-use super::Area;
-use super::cells::Cell;
+use super::cells::{self, Cell};
 use super::patterns::{Border, borders, calm};
+use super::{Area, Built, repair};
 use crate::stage::World;
 use crate::stage::world::{Identities, Link, TemplateInfo, UNITS_PER_METRE, WalkLimits, WorldInfo, mix};
 use crate::world::{CrowdPatch, FramePatch, Limits, Options, Pattern, Placement, bake, solve};
@@ -19,40 +17,69 @@ use crate::{Error, Result};
 /// Rounds of calming borders; in the last all people of those left give up.
 const ROUNDS: u32 = 6;
 
-pub(super) fn world(
-    area: &Area,
-    name: &str,
-    cells: &[Cell],
-    notes: &mut Vec<String>,
-    progress: &(dyn Fn(usize, usize) -> bool + Sync),
-) -> Result<World> {
-    let mut borders = borders(area, cells);
-    let mut patches: Vec<Option<CrowdPatch>> = vec![None; cells.len()];
-    let mut calmed = BTreeSet::new();
-    for round in 0..=ROUNDS {
-        let frames = frames(area, cells, &borders);
-        solve_missing(area, cells, frames, &mut patches, round, progress)?;
-        let left: Vec<usize> = (0..cells.len()).filter(|&cell| patches[cell].is_none()).collect();
-        if left.is_empty() {
-            break;
+/// The cells of an area on their way to patches, round by round: borders of cells that find no way get calmer, and the cells on
+/// both their sides are solved again. All of it follows from the area and from which cells failed in which round.
+#[derive(Clone, Debug)]
+pub(in crate::world) struct Works {
+    cells: Vec<Cell>,
+    borders: Vec<Border>,
+    frames: Vec<FramePatch>,
+    calmed: BTreeSet<(usize, usize)>,
+    notes: Vec<String>,
+    round: u32,
+}
+
+impl Works {
+    /// Repairs and cuts the ground.
+    pub fn new(area: &Area) -> Result<Self> {
+        let mut notes = Vec::new();
+        let walkable = repair::repair(&area.grounds, area.side.into(), &mut notes)?;
+        let cells = cells::cut(&walkable, area.side.into(), &mut notes)?;
+        let borders = borders(area, &cells);
+        let frames = frames(area, &cells, &borders);
+        Ok(Self { cells, borders, frames, calmed: BTreeSet::new(), notes, round: 0 })
+    }
+
+    /// Every cell with its present patterns, without objects.
+    pub fn frames(&self) -> &[FramePatch] {
+        &self.frames
+    }
+
+    /// The patch of a cell; none if no way is found.
+    pub fn solve(&self, area: &Area, cell: usize) -> Option<CrowdPatch> {
+        patch(area, self.cells[cell].template, cell, self.frames[cell].clone(), self.round)
+    }
+
+    /// Ends a round in which some cells failed. Returns the cells of the next.
+    pub fn next(&mut self, area: &Area, failed: &[usize]) -> Result<Vec<usize>> {
+        if self.round == ROUNDS && !failed.is_empty() {
+            return Err(Error::invalid("area", "cells", "expected a way through every cell"));
         }
-        for border in borders.iter_mut().filter(|b| left.contains(&b.first.0) || left.contains(&b.second.0)) {
-            border.calm = if round + 2 >= ROUNDS { 20 } else { border.calm };
-            calm(area, cells, border);
-            calmed.insert(border.first);
-            (patches[border.first.0], patches[border.second.0]) = (None, None);
+        let mut again: BTreeSet<usize> = failed.iter().copied().collect();
+        let touched = |border: &&mut Border| failed.contains(&border.first.0) || failed.contains(&border.second.0);
+        for border in self.borders.iter_mut().filter(touched) {
+            border.calm = if self.round + 2 >= ROUNDS { 20 } else { border.calm };
+            calm(area, &self.cells, border);
+            self.calmed.insert(border.first);
+            again.extend([border.first.0, border.second.0]);
         }
+        self.frames = frames(area, &self.cells, &self.borders);
+        self.round += 1;
+        Ok(again.into_iter().collect())
     }
-    if !calmed.is_empty() {
-        notes.push(format!("fewer people than wished for cross {} of {} borders", calmed.len(), borders.len()));
+
+    /// The world of all patches.
+    pub fn bake(mut self, area: &Area, name: &str, patches: &[CrowdPatch]) -> Result<Built> {
+        let borders = self.borders.len();
+        if !self.calmed.is_empty() {
+            self.notes.push(format!("fewer people than wished for cross {} of {borders} borders", self.calmed.len()));
+        }
+        let quiet = self.borders.iter().filter(|b| b.pattern.is_empty()).count();
+        if quiet > 0 {
+            self.notes.push(format!("nobody crosses {quiet} of {borders} borders: too short, or corners too sharp"));
+        }
+        Ok(Built { world: baked(area, name, &self.cells, patches)?, notes: self.notes })
     }
-    let quiet = borders.iter().filter(|b| b.pattern.is_empty()).count();
-    if quiet > 0 {
-        notes.push(format!("nobody crosses {quiet} of {} borders: too short, or corners too sharp", borders.len()));
-    }
-    let patches: Option<Vec<CrowdPatch>> = patches.into_iter().collect();
-    let patches = patches.ok_or_else(|| Error::invalid("area", "cells", "expected a way through every cell"))?;
-    baked(area, name, cells, &patches)
 }
 
 /// Middle of a cell: the origin of its frame, on whole units.
@@ -75,31 +102,6 @@ fn frames(area: &Area, cells: &[Cell], borders: &[Border]) -> Vec<FramePatch> {
         frames[border.second.0].patterns[border.second.1] = border.pattern.mirror();
     }
     frames
-}
-
-fn solve_missing(
-    area: &Area,
-    cells: &[Cell],
-    frames: Vec<FramePatch>,
-    patches: &mut [Option<CrowdPatch>],
-    round: u32,
-    progress: &(dyn Fn(usize, usize) -> bool + Sync),
-) -> Result<()> {
-    let (total, done) = (frames.len(), AtomicUsize::new(patches.iter().flatten().count()));
-    let missing: Vec<(usize, FramePatch)> =
-        frames.into_iter().enumerate().filter(|(i, _)| patches[*i].is_none()).collect();
-    let solved: Result<Vec<(usize, Option<CrowdPatch>)>> = missing
-        .into_par_iter()
-        .map(|(index, frame)| {
-            let patch = patch(area, cells[index].template, index, frame, round);
-            let done = done.fetch_add(usize::from(patch.is_some()), Ordering::Relaxed) + 1;
-            if progress(done.min(total), total) { Ok((index, patch)) } else { Err(Error::Stopped) }
-        })
-        .collect();
-    for (index, patch) in solved? {
-        patches[index] = patch;
-    }
-    Ok(())
 }
 
 /// A cell filled with walkers: with objects if that can be, else without.
