@@ -99,7 +99,7 @@ test: test-rust test-python test-studio test-browser
 # The profile of the extension: its dependencies are compiled once for both.
 test-rust:
 	@echo "== Rust tests"
-	cargo test --release --quiet
+	cargo test --release --quiet -p crowdquilt -p crowdquilt-capi
 
 test-python: setup $(CLIENTS)
 	@echo "== Python tests"

@@ -25,6 +25,7 @@ from crowdquilt._core import (
     Scene,
     World,
     WorldScene,
+    WorldSite,
     __version__,
 )
 
@@ -44,6 +45,7 @@ __all__ = [
     "Scene",
     "World",
     "WorldScene",
+    "WorldSite",
     "__version__",
     "check",
     "export",

@@ -7,12 +7,30 @@ from pathlib import Path
 from typing import Any
 
 from crowdquilt import patch, samples
-from crowdquilt._core import PatchSet, Pattern, World, WorldScene
+from crowdquilt._core import PatchSet, Pattern, World, WorldScene, WorldSite
 from crowdquilt._core import build_world as build
 from crowdquilt._core import check_world as check
 from crowdquilt.outputs import whole_file
+from crowdquilt.world_shards import build_sharded
+from crowdquilt.world_workers import Crew, dask, processes, threads
 
-__all__ = ["Pattern", "World", "WorldScene", "build", "check", "facts", "holds_world", "sample_walks", "save"]
+__all__ = [
+    "Crew",
+    "Pattern",
+    "World",
+    "WorldScene",
+    "WorldSite",
+    "build",
+    "build_sharded",
+    "check",
+    "dask",
+    "facts",
+    "holds_world",
+    "processes",
+    "sample_walks",
+    "save",
+    "threads",
+]
 
 MAGIC = b"CQWORLD"
 

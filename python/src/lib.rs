@@ -17,6 +17,7 @@ mod progress;
 mod refine;
 mod samples;
 mod signals;
+mod site;
 mod stage;
 mod tiling;
 mod wishes;
@@ -46,6 +47,8 @@ mod _core {
     use super::samples::write_samples;
     #[pymodule_export]
     use super::signals::{PairSignals, TakeSignals};
+    #[pymodule_export]
+    use super::site::WorldSite;
     #[pymodule_export]
     use super::stage::{Crowd, Fragment, Obstacle, Prop};
     #[pymodule_export]

@@ -21,7 +21,7 @@ use crate::progress::watched;
 
 /// What a world is made from: templates, and a map of where which is.
 #[pyclass(frozen, module = "crowdquilt")]
-pub struct WorldScene(core::WorldScene);
+pub struct WorldScene(pub core::WorldScene);
 
 #[pymethods]
 impl WorldScene {
@@ -36,6 +36,17 @@ impl WorldScene {
     #[pyo3(signature = (text, folder=PathBuf::from(".")))]
     fn from_toml(py: Python<'_>, text: &str, folder: PathBuf) -> PyResult<Self> {
         run(py, || core::WorldScene::from_toml(text, &folder)).map(Self)
+    }
+
+    /// A scene from the bytes of another.
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Self> {
+        run(py, || core::WorldScene::from_bytes(data)).map(Self)
+    }
+
+    /// The scene as bytes, with all that its files said: for another process or machine with the same version.
+    fn to_bytes(&self) -> Cow<'static, [u8]> {
+        Cow::Owned(self.0.to_bytes())
     }
 
     /// The same scene with another seed.

@@ -30,6 +30,7 @@
 //! | `scene.rs` | scene files: templates, and a map in characters or a picture |
 //! | `survey.rs`, `site.rs`, `shard.rs` | a build in pieces: which patches there are to solve, in any order and by anybody; files of some of them |
 //! | `gait.rs` | walking cycles out of captures, and steps for everybody |
+//! | `goal.rs`, `goal_solve.rs`, `journey.rs` | walkers who go somewhere; who gets from one place to another soonest |
 //! | `stream.rs` | an endless world around a camera |
 //! | `scenes.rs`, `measure.rs` | the street and the city of the paper; how long patches take |
 
@@ -40,6 +41,9 @@ mod band;
 mod frame;
 mod furnish;
 mod gait;
+mod goal;
+mod goal_solve;
+mod journey;
 mod kinds;
 mod lattice;
 mod limits;
@@ -67,6 +71,8 @@ pub use area::{Area, Built, Coordinates, Ground};
 pub use bake::{Placement, bake};
 pub use frame::{Border, FramePatch, Standing, StaticObject};
 pub use gait::{gait_table, with_gait};
+pub use goal::{Goal, Round, Rounds, Spot};
+pub use journey::Journey;
 pub use kinds::{Flow, PatternType, balance};
 pub use lattice::{Lattice, Sighting};
 pub use limits::Limits;
@@ -79,6 +85,7 @@ pub use scene::{Layout, WorldScene};
 pub use shape::Shape;
 pub use shard::Shard;
 pub use site::Site;
+use solve::solve_connected;
 pub use solve::{Common, Method, Options, Solution, solve, vary};
 pub use stream::Stream;
 pub use template::{Amount, Furnishing, Gathering, Prototype, Template};

@@ -24,6 +24,8 @@ const HARDEST: f64 = 1.6;
 const SHORTEST: f64 = 2.0;
 /// Cost of going back over the edge one came by.
 const SAME_EDGE: f64 = 1e4;
+/// Cost of another connection than one that must be.
+const REQUIRED: f64 = 1e7;
 /// Cost of an object on the straight way.
 const BLOCKED: f64 = 1.0;
 
@@ -66,6 +68,13 @@ impl Pairing {
     pub fn avoid(&mut self, input: usize, output: usize, cost: f64) {
         let n = self.len();
         self.cost[input * n + output] += cost;
+    }
+
+    /// Leads `input` to `output` and nowhere else, whatever it costs.
+    pub fn require(&mut self, input: usize, output: usize) {
+        for other in (0..self.len()).filter(|&other| other != output) {
+            self.avoid(input, other, REQUIRED);
+        }
     }
 
     /// Periods between them.

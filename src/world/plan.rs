@@ -10,9 +10,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
+use super::goal_solve::{Connections, solve_with};
 use super::lattice::rectangle;
 use super::survey::Survey;
-use super::{Common, CrowdPatch, FramePatch, Lattice, Limits, Options, Pattern, PatternType, Template, solve, vary};
+use super::{Common, CrowdPatch, FramePatch, Goal, Lattice, Limits, Options, Pattern, PatternType, Template, vary};
 use crate::stage::world::mix;
 use crate::{Error, Result};
 
@@ -43,6 +44,9 @@ pub struct Plan {
     /// if every cell is unlike all others.
     #[serde(default)]
     pub versions: u64,
+    /// Who goes where on purpose.
+    #[serde(default)]
+    pub goals: Vec<Goal>,
     /// Same seed, same world.
     #[serde(default)]
     pub seed: u64,
@@ -87,6 +91,7 @@ impl Plan {
             endless: false,
             patterns: patterns(),
             versions: 0,
+            goals: Vec::new(),
             seed: 0,
         };
         plan.validate()?;
@@ -122,7 +127,10 @@ impl Plan {
                 return Err(Error::invalid("map", format!("template {:?}", template.name), problem));
             }
         }
-        Ok(())
+        match self.goal_problem() {
+            Some((goal, problem)) => Err(Error::invalid("map", format!("goal {}", goal + 1), problem)),
+            None => Ok(()),
+        }
     }
 
     /// Columns and rows.
@@ -209,15 +217,25 @@ impl Plan {
     /// # Errors
     /// If the patterns have no room, are not balanced, or no way is found even without objects.
     pub fn patch(&self, column: usize, row: usize) -> Result<CrowdPatch> {
+        let rounds = self.rounds()?;
+        let connections = rounds.connections.get(&(row * self.size().0 + column));
+        self.connected(column, row, connections.map_or(&[], Vec::as_slice))
+    }
+
+    /// The same with some connections given; without them if no way is found with them.
+    pub(super) fn connected(&self, column: usize, row: usize, connections: &Connections) -> Result<CrowdPatch> {
         let bare = self.frame(column, row)?;
-        let place = self.cell_key(column, row);
+        let place =
+            connections.iter().fold(self.cell_key(column, row), |hash, c| mix(mix(hash, c.0 as u64), c.1 as u64));
         let cell = || format!("column {column}, row {row}");
-        for attempt in 0..ATTEMPTS {
-            let frame = self.furnished(&bare, column, row, mix(place, attempt), attempt + 1 == ATTEMPTS);
-            let solution = solve(&frame, &Limits::default(), &self.options(place, attempt))
-                .map_err(|e| Error::invalid("map", cell(), e.to_string()))?;
-            if solution.ok() {
-                return Ok(solution.patch);
+        for given in if connections.is_empty() { vec![connections] } else { vec![connections, &[]] } {
+            for attempt in 0..ATTEMPTS {
+                let frame = self.furnished(&bare, column, row, mix(place, attempt), attempt + 1 == ATTEMPTS);
+                let found = solve_with(&frame, given, &Limits::default(), &self.options(place, attempt))
+                    .map_err(|e| Error::invalid("map", cell(), e.to_string()))?;
+                if let Some(patch) = found {
+                    return Ok(patch);
+                }
             }
         }
         let template = &self.template(column, row).name;

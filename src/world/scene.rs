@@ -13,7 +13,7 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::{Amount, Area, Built, Coordinates, Furnishing, Gathering, Plan, Prototype, Site, Template};
+use super::{Amount, Area, Built, Coordinates, Furnishing, Gathering, Goal, Plan, Prototype, Site, Spot, Template};
 use crate::{Error, Result};
 use border::BorderText;
 
@@ -54,6 +54,8 @@ struct SceneText {
     versions: u32,
     map: Option<Spanned<String>>,
     area: Option<Spanned<AreaText>>,
+    #[serde(default)]
+    goals: Vec<Spanned<GoalText>>,
     templates: Vec<Spanned<TemplateText>>,
 }
 
@@ -100,6 +102,37 @@ struct PeopleText {
     radius: f32,
     number: Option<[usize; 2]>,
     density: Option<f32>,
+}
+
+/// Who goes where on purpose.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GoalText {
+    from: SpotText,
+    to: SpotText,
+    rounds: usize,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(untagged)]
+enum SpotText {
+    At([f32; 2]),
+    Template(String),
+}
+
+impl GoalText {
+    fn goal(&self) -> Goal {
+        Goal { from: self.from.spot(), to: self.to.spot(), rounds: self.rounds }
+    }
+}
+
+impl SpotText {
+    fn spot(&self) -> Spot {
+        match self {
+            Self::At(place) => Spot::At((*place).into()),
+            Self::Template(name) => Spot::Template(name.clone()),
+        }
+    }
 }
 
 fn default_seed() -> u64 {
@@ -238,6 +271,7 @@ impl SceneText {
             endless: self.endless,
             patterns: *self.patterns.get_ref() as u64,
             versions: self.versions.into(),
+            goals: self.goals.iter().map(|g| g.get_ref().goal()).collect(),
             seed: self.seed,
         }
     }
@@ -251,6 +285,9 @@ impl SceneText {
                 Coordinates::Metres
             }
         };
+        if let Some(goal) = self.goals.first() {
+            bad.add(goal.span(), "expected goals on a map only, found one on an area".into());
+        }
         if self.endless {
             bad.add(area.span(), "expected an area to end, found endless = true".into());
         }

@@ -4,6 +4,10 @@
 //! The header names round and cells; the one array `patches` holds the patches in the encoding of postcard, which keeps every bit
 //! of every number. Shards are read by the version that wrote them: they are not made to be kept longer than a build takes.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
 use super::{CrowdPatch, Port, Site, WorldScene};
 use crate::container::{Reader, Writer};
 use crate::{Error, Result};
@@ -29,18 +33,20 @@ struct Header {
 }
 
 impl Shard {
-    /// Solves some cells of a site, one after the other; `go_on` is told how many are done, and stops the work by returning false.
+    /// Solves some cells of a site on so many threads, 0 for all cores; `go_on` is told how many are done, and stops the work by
+    /// returning false.
     ///
     /// # Errors
     /// As [`Site::solve`], and if it was stopped.
-    pub fn solve(site: &Site, cells: &[usize], go_on: &dyn Fn(usize) -> bool) -> Result<Self> {
-        let mut patches = Vec::with_capacity(cells.len());
-        for &cell in cells {
-            patches.push(site.solve(cell)?);
-            if !go_on(patches.len()) {
-                return Err(Error::Stopped);
-            }
-        }
+    pub fn solve(site: &Site, cells: &[usize], threads: usize, go_on: &(dyn Fn(usize) -> bool + Sync)) -> Result<Self> {
+        let done = AtomicUsize::new(0);
+        let one = |&cell: &usize| {
+            let patch = site.solve(cell)?;
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            if go_on(done) { Ok(patch) } else { Err(Error::Stopped) }
+        };
+        let all = || cells.par_iter().map(one).collect::<Result<Vec<_>>>();
+        let patches = if threads == 0 { all()? } else { pool(threads)?.install(all)? };
         Ok(Self { round: site.round(), cells: cells.to_vec(), patches })
     }
 
@@ -82,6 +88,11 @@ impl Shard {
         }
         Ok(())
     }
+}
+
+fn pool(threads: usize) -> Result<rayon::ThreadPool> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|e| Error::invalid("build", "threads", e.to_string()))
 }
 
 /// What is wrong with a cell's patch, if anything.

@@ -189,8 +189,9 @@ impl Site {
         let patches = patches.ok_or_else(|| Error::invalid("build", "cells", "expected all of them solved"))?;
         match (self.works, &self.scene.layout) {
             (Kinds::Map(survey), Layout::Map(plan)) => {
+                let notes = survey.notes(plan, &patches);
                 let world = plan.bake(&self.scene.name, &survey.join(plan, patches)?)?;
-                Ok(Built { world, notes: Vec::new() })
+                Ok(Built { world, notes })
             }
             (Kinds::Area(works), Layout::Area(area)) => works.bake(area, &self.scene.name, &patches),
             _ => Err(Error::invalid("build", "scene", "expected the scene of the site")),
@@ -221,7 +222,7 @@ mod tests {
                 let copy = WorldScene::from_bytes(&scene.to_bytes()).unwrap();
                 let worker = Site::after(&copy, site.failures()).unwrap();
                 assert_eq!(worker.left(), left);
-                let bytes = Shard::solve(&worker, block, &|_| true).unwrap().to_bytes();
+                let bytes = Shard::solve(&worker, block, 1, &|_| true).unwrap().to_bytes();
                 site.take(Shard::from_bytes(&bytes).unwrap()).unwrap();
             }
             assert!(site.open().is_empty());
@@ -242,7 +243,7 @@ mod tests {
     #[test]
     fn what_is_missing_or_of_another_build_is_refused() {
         let mut site = Site::new(&scene()).unwrap();
-        let shard = Shard::solve(&site, &[3, 4], &|_| true).unwrap();
+        let shard = Shard::solve(&site, &[3, 4], 0, &|_| true).unwrap();
         let message = |e: Error| e.to_string();
         assert!(message(site.end_round().unwrap_err()).contains("found none for 0"));
         let mut other = Site::new(&scene().with_seed(9)).unwrap();
@@ -258,7 +259,7 @@ mod tests {
 
     #[test]
     fn damaged_bytes_are_refused() {
-        let bytes = Shard::solve(&Site::new(&scene()).unwrap(), &[0, 9], &|_| true).unwrap().to_bytes();
+        let bytes = Shard::solve(&Site::new(&scene()).unwrap(), &[0, 9], 0, &|_| true).unwrap().to_bytes();
         for cut in (0..bytes.len()).step_by(97) {
             assert!(Shard::from_bytes(&bytes[..cut]).is_err());
         }

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use glam::Vec2;
 
-use super::{CrowdPatch, FramePatch, Lattice, Plan};
+use super::goal_solve::{Connections, holds};
+use super::{CrowdPatch, FramePatch, Goal, Lattice, Plan, Rounds};
 use crate::Result;
 
 /// The patch kinds of a plan.
@@ -14,6 +15,7 @@ pub(super) struct Survey {
     first: Vec<usize>,
     /// Kind of every cell.
     cells: Vec<usize>,
+    rounds: Rounds,
 }
 
 impl Survey {
@@ -21,16 +23,18 @@ impl Survey {
     pub fn new(plan: &Plan) -> Result<Self> {
         plan.validate()?;
         let (columns, rows) = plan.size();
+        let rounds = plan.rounds()?;
         let (mut index, mut first) = (BTreeMap::new(), Vec::new());
         let mut cells = Vec::with_capacity(columns * rows);
         for cell in 0..columns * rows {
-            let kind = *index.entry(plan.cell_key(cell % columns, cell / columns)).or_insert_with(|| {
+            let key = (plan.cell_key(cell % columns, cell / columns), rounds.connections.get(&cell));
+            let kind = *index.entry(key).or_insert_with(|| {
                 first.push(cell);
                 first.len() - 1
             });
             cells.push(kind);
         }
-        Ok(Self { first, cells })
+        Ok(Self { first, cells, rounds })
     }
 
     /// How many kinds there are.
@@ -53,7 +57,24 @@ impl Survey {
     /// The patch of a kind.
     pub fn solve(&self, plan: &Plan, kind: usize) -> Result<CrowdPatch> {
         let (column, row) = self.place(plan, kind);
-        plan.patch(column, row)
+        plan.connected(column, row, self.connections(self.first[kind]))
+    }
+
+    /// The connections that a cell must have.
+    fn connections(&self, cell: usize) -> &Connections {
+        self.rounds.connections.get(&cell).map_or(&[], Vec::as_slice)
+    }
+
+    /// What became of the plan's goals, in words, where that is not what it asks for.
+    pub fn notes(&self, plan: &Plan, kinds: &[CrowdPatch]) -> Vec<String> {
+        let kept = |step: &(usize, usize)| holds(&kinds[self.cells[step.0]], self.connections(step.0));
+        let note = |(goal, wish): (usize, &Goal)| {
+            let found = self.rounds.found.iter().filter(|round| round.goal == goal);
+            let kept = found.filter(|round| round.steps.iter().all(kept)).count();
+            let text = format!("goal {}: {kept} of {} rounds have a way there and back", goal + 1, wish.rounds);
+            (kept < wish.rounds).then_some(text)
+        };
+        plan.goals.iter().enumerate().filter_map(note).collect()
     }
 
     /// The patches of all kinds, joined.

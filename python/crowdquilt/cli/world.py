@@ -24,6 +24,7 @@ from crowdquilt.report import row_dict
     epilog=example(
         "world examples/worlds/street.toml -o out/street.world",
         "world examples/worlds/city.toml -o out/city.world --plot out/city.png --patch out/patch.png",
+        "world examples/worlds/city.toml -o out/city.world --shards out/city.shards --dask local",
     ),
 )
 def make_world(
@@ -36,13 +37,21 @@ def make_world(
         Path | None, typer.Option(help="Walk as the people of this patch set (.patches); generated ones if not given.")
     ] = None,
     bodies: Annotated[bool, typer.Option(help="Give everybody a full body; without, the file is smaller.")] = True,
+    shards: Annotated[
+        Path | None,
+        typer.Option(help="Keep solved cells in this folder: a build that was killed goes on where it was."),
+    ] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes that solve (with --shards).")] = None,
+    dask: Annotated[
+        str | None, typer.Option(help="Address of a Dask scheduler whose workers solve, or local (with --shards).")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print what was made as JSON.")] = False,
 ) -> None:
     """Build a populated world from crowd patches: people walk in it for ever, and never touch anybody or anything."""
     expect_picture(plot, patch)
     begin = time.perf_counter()
     try:
-        made, notes = build(WorldScene.load(scene).replace(seed=seed))
+        made, notes = build(WorldScene.load(scene).replace(seed=seed), shards, crew(shards, workers, dask))
     except CrowdquiltError as error:
         # The core speaks of "map" and "patch"; the user knows them by their file.
         message = str(error)
@@ -63,12 +72,27 @@ def make_world(
     console.print(f"{', '.join(written)}: written", soft_wrap=True)
 
 
-def build(scene: WorldScene) -> tuple[World, list[str]]:
+def crew(shards: Path | None, workers: int | None, dask: str | None) -> worlds.Crew:
+    """Who solves the cells."""
+    if shards is None and (workers or dask):
+        raise typer.BadParameter("--workers and --dask need a folder for what they send", param_hint="--shards")
+    if dask:
+        return worlds.dask(dask, workers)
+    return worlds.processes(workers) if workers else worlds.threads
+
+
+def build(scene: WorldScene, shards: Path | None, crew: worlds.Crew) -> tuple[World, list[str]]:
     """Build with a progress bar; Ctrl-C stops it."""
     columns = (SpinnerColumn(), TextColumn("solving patches"), BarColumn(bar_width=24), MofNCompleteColumn())
     with Bar(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("solving patches", total=None)
-        return worlds.build(scene, progress=lambda step: bar.update(task, completed=step[0], total=step[1]))
+
+        def progress(step: tuple[int, int]) -> None:
+            bar.update(task, completed=step[0], total=step[1])
+
+        if shards is None:
+            return worlds.build(scene, progress=progress)
+        return worlds.build_sharded(scene, shards, crew=crew, progress=progress)
 
 
 def draw(made: World, plan: Path | None, patch: Path | None) -> None:

@@ -135,6 +135,17 @@ impl Identities {
         self.crossings[crossing].laps.into()
     }
 
+    /// Copies of the world from the cycle's begin to a crossing.
+    pub fn copies(&self, crossing: usize) -> [i64; 2] {
+        self.crossings[crossing].copies.map(i64::from)
+    }
+
+    /// Once around a cycle: periods, 0 if it is a way through the world, and copies of the world.
+    pub fn around(&self, cycle: u32) -> (i64, [i64; 2]) {
+        let round = self.cycles[cycle as usize];
+        (round.people.into(), round.copies.map(i64::from))
+    }
+
     /// Whether a cycle is a way through the world rather than a round in it.
     pub fn leads_out(&self, cycle: u32) -> bool {
         self.cycles[cycle as usize].people == 0

@@ -175,6 +175,11 @@ impl World {
         Some(self.rows.lane(&self.tables, kind, lane, &moment))
     }
 
+    /// Crossing of the first walker of a patch; those of the others follow.
+    pub fn first_crossing(&self, instance: usize) -> usize {
+        self.first_crossing[instance] as usize
+    }
+
     /// Who walks in `instance` at `moment`, in the order of [`Self::roots`]: index of the walker in the kind, and the period it came
     /// in.
     pub fn walkers_of(&self, instance: usize, moment: &Moment) -> impl ExactSizeIterator<Item = (usize, i64)> {

@@ -13,9 +13,9 @@ mod solve;
 use std::path::Path;
 
 use super::{Layout, Template, WorldScene};
-pub(super) use solve::Works;
 use crate::stage::World;
 use crate::{Error, Result};
+pub(super) use solve::Works;
 
 /// Walkable ground and who is on it.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]

@@ -85,9 +85,22 @@ impl Solution {
 /// # Errors
 /// If the frame cannot be solved by anybody ([`FramePatch::problems`]): names the first problem.
 pub fn solve(frame: &FramePatch, limits: &Limits, options: &Options) -> Result<Solution> {
-    fill(frame, limits, options, |planner, rng| match options.method {
-        Method::Curves => planner.run(options, rng),
-        Method::Particles => (planner.run_particles(rng), 0),
+    solve_connected(frame, &[], limits, options)
+}
+
+/// The same where some inputs have to lead to some outputs, if that can be.
+pub(super) fn solve_connected(
+    frame: &FramePatch,
+    connections: &[(usize, usize)],
+    limits: &Limits,
+    options: &Options,
+) -> Result<Solution> {
+    fill(frame, limits, options, |planner, rng| {
+        connections.iter().for_each(|&(input, output)| planner.pairing.require(input, output));
+        match options.method {
+            Method::Curves => planner.run(options, rng),
+            Method::Particles => (planner.run_particles(rng), 0),
+        }
     })
 }
 
