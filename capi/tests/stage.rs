@@ -177,8 +177,8 @@ fn a_c_compiler_lays_structures_out_alike() {
 #[test]
 fn the_example_compiles_and_walks() {
     let out = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    // The library lies beside the folder that this test is in.
-    let libraries = std::env::current_exe().unwrap().parent().unwrap().parent().unwrap().to_owned();
+    // The library lies beside this test.
+    let libraries = std::env::current_exe().unwrap().parent().unwrap().to_owned();
     let (program, file) = (out.join("walk"), out.join("walk.world"));
     let (include, source) = (root().join("include"), root().join("examples/walk.c"));
     let path = CString::new(format!("-Wl,-rpath,{}", libraries.display())).unwrap();

@@ -31,6 +31,7 @@
 //! | `survey.rs`, `site.rs`, `shard.rs` | a build in pieces: which patches there are to solve, in any order and by anybody; files of some of them |
 //! | `gait.rs` | walking cycles out of captures, and steps for everybody |
 //! | `goal.rs`, `goal_solve.rs`, `journey.rs` | walkers who go somewhere; who gets from one place to another soonest |
+//! | `spectator/` | people step aside for somebody who walks among them |
 //! | `stream.rs` | an endless world around a camera |
 //! | `scenes.rs`, `measure.rs` | the street and the city of the paper; how long patches take |
 
@@ -61,6 +62,7 @@ mod shard;
 mod site;
 mod solve;
 mod spacing;
+pub mod spectator;
 mod stream;
 mod survey;
 mod template;
@@ -87,5 +89,6 @@ pub use shard::Shard;
 pub use site::Site;
 use solve::solve_connected;
 pub use solve::{Common, Method, Options, Solution, solve, vary};
+pub use spectator::Spectator;
 pub use stream::Stream;
 pub use template::{Amount, Furnishing, Gathering, Prototype, Template};
