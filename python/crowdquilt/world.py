@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdquilt import patch, samples
-from crowdquilt._core import PatchSet, Pattern, World, WorldScene, WorldSite
+from crowdquilt._core import Day, PatchSet, Pattern, Spectator, World, WorldScene, WorldSite, journey
 from crowdquilt._core import build_world as build
 from crowdquilt._core import check_world as check
 from crowdquilt.outputs import whole_file
@@ -16,7 +16,9 @@ from crowdquilt.world_workers import Crew, dask, processes, threads
 
 __all__ = [
     "Crew",
+    "Day",
     "Pattern",
+    "Spectator",
     "World",
     "WorldScene",
     "WorldSite",
@@ -26,6 +28,7 @@ __all__ = [
     "dask",
     "facts",
     "holds_world",
+    "journey",
     "processes",
     "sample_walks",
     "save",

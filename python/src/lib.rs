@@ -5,6 +5,7 @@
 
 use pyo3::prelude::*;
 
+mod beyond;
 mod check;
 mod connectivity;
 mod error;
@@ -25,6 +26,8 @@ mod world;
 
 #[pymodule]
 mod _core {
+    #[pymodule_export]
+    use super::beyond::{Day, Spectator, journey};
     #[pymodule_export]
     use super::check::{Report, Row, Summary, check_crowd, summary};
     #[pymodule_export]

@@ -133,6 +133,8 @@ struct Net {
     /// Of every cell, inputs and outputs that are on a round.
     taken: Vec<[Vec<bool>; 2]>,
     rows: usize,
+    /// Whether connections of a cell can be chosen: not if it repeats within a period.
+    free: Vec<bool>,
 }
 
 impl Net {
@@ -144,7 +146,9 @@ impl Net {
         let outputs: Vec<Vec<Port>> = frames.iter().map(|f| f.outputs().collect()).collect();
         let free = |(a, b): (&Vec<Port>, &Vec<Port>)| [vec![false; a.len()], vec![false; b.len()]];
         let taken = inputs.iter().zip(&outputs).map(free).collect();
-        Ok(Self { columns, rows, frames, inputs, outputs, taken })
+        let single = |cell: usize| plan.repeats_of(plan.cells[cell / columns][cell % columns]) == 1;
+        let free = (0..columns * rows).map(single).collect();
+        Ok(Self { columns, rows, frames, inputs, outputs, taken, free })
     }
 
     /// Cell and input on the other side of an output; none over the border of the map, so that rounds come back to where they
@@ -195,7 +199,8 @@ impl Net {
         let edge = self.inputs[cell][input].edge;
         let outputs = 0..self.outputs[cell].len();
         let open = move |&output: &usize| {
-            self.outputs[cell][output].edge != edge
+            self.free[cell]
+                && self.outputs[cell][output].edge != edge
                 && !self.taken[cell][1][output]
                 && self.leaves_ways(cell, input, output)
         };

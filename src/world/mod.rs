@@ -31,6 +31,7 @@
 //! | `survey.rs`, `site.rs`, `shard.rs` | a build in pieces: which patches there are to solve, in any order and by anybody; files of some of them |
 //! | `gait.rs` | walking cycles out of captures, and steps for everybody |
 //! | `goal.rs`, `goal_solve.rs`, `journey.rs` | walkers who go somewhere; who gets from one place to another soonest |
+//! | `periods.rs`, `day.rs` | several periods in one world; density that follows the time of day |
 //! | `spectator/` | people step aside for somebody who walks among them |
 //! | `stream.rs` | an endless world around a camera |
 //! | `scenes.rs`, `measure.rs` | the street and the city of the paper; how long patches take |
@@ -39,6 +40,7 @@ mod area;
 mod assign;
 mod bake;
 mod band;
+mod day;
 mod frame;
 mod furnish;
 mod gait;
@@ -53,6 +55,7 @@ mod pairing;
 mod patch;
 mod path;
 mod pattern;
+mod periods;
 mod plan;
 mod route;
 mod scene;
@@ -71,6 +74,7 @@ mod valid;
 pub use crate::stage::world::{Identities, Link, Person};
 pub use area::{Area, Built, Coordinates, Ground};
 pub use bake::{Placement, bake};
+pub use day::Day;
 pub use frame::{Border, FramePatch, Standing, StaticObject};
 pub use gait::{gait_table, with_gait};
 pub use goal::{Goal, Round, Rounds, Spot};

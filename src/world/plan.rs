@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::goal_solve::{Connections, solve_with};
 use super::lattice::rectangle;
+use super::periods::unroll;
 use super::survey::Survey;
 use super::{Common, CrowdPatch, FramePatch, Goal, Lattice, Limits, Options, Pattern, PatternType, Template, vary};
 use crate::stage::world::mix;
@@ -44,6 +45,9 @@ pub struct Plan {
     /// if every cell is unlike all others.
     #[serde(default)]
     pub versions: u64,
+    /// How often patches of every template repeat in a period; once where nothing is said.
+    #[serde(default)]
+    pub repeats: Vec<u32>,
     /// Who goes where on purpose.
     #[serde(default)]
     pub goals: Vec<Goal>,
@@ -91,6 +95,7 @@ impl Plan {
             endless: false,
             patterns: patterns(),
             versions: 0,
+            repeats: Vec::new(),
             goals: Vec::new(),
             seed: 0,
         };
@@ -117,8 +122,9 @@ impl Plan {
                 return Err(Error::invalid("map", format!("row {row}"), problem));
             }
         }
-        for template in &self.templates {
-            if let Some(problem) = template.problems().into_iter().next() {
+        for (index, template) in self.templates.iter().enumerate() {
+            let problem = template.problems().into_iter().next().or_else(|| self.repeats_problem(index));
+            if let Some(problem) = problem {
                 return Err(Error::invalid("map", format!("template {:?}", template.name), problem));
             }
             let known = |name: &&String| self.templates.iter().any(|t| t.name == **name);
@@ -168,7 +174,9 @@ impl Plan {
                 let seed = [first, second, variant].into_iter().fold(self.seed, mix);
                 let mut rng = ChaCha8Rng::seed_from_u64(seed);
                 let kind = self.border_type(first as usize, second as usize).unwrap_or(PatternType::empty());
-                let pattern = kind.generate(self.side, self.period, &Limits::default(), &mut rng)?;
+                let times = self.border_repeats(first as usize, second as usize);
+                let once = kind.generate(self.side, self.period / times as f32, &Limits::default(), &mut rng)?;
+                let pattern = if times == 1 { once } else { once.repeated(times, self.period) };
                 Ok(if mirrored == 0 { pattern } else { pattern.mirror() })
             }
             None => Ok(Pattern::empty(self.side, self.period)),
@@ -224,7 +232,8 @@ impl Plan {
 
     /// The same with some connections given; without them if no way is found with them.
     pub(super) fn connected(&self, column: usize, row: usize, connections: &Connections) -> Result<CrowdPatch> {
-        let bare = self.frame(column, row)?;
+        let (full, times) = (self.frame(column, row)?, self.repeats_of(self.cells[row][column]));
+        let bare = if times == 1 { full.clone() } else { full.once(times) };
         let place =
             connections.iter().fold(self.cell_key(column, row), |hash, c| mix(mix(hash, c.0 as u64), c.1 as u64));
         let cell = || format!("column {column}, row {row}");
@@ -234,7 +243,7 @@ impl Plan {
                 let found = solve_with(&frame, given, &Limits::default(), &self.options(place, attempt))
                     .map_err(|e| Error::invalid("map", cell(), e.to_string()))?;
                 if let Some(patch) = found {
-                    return Ok(patch);
+                    return Ok(if times == 1 { patch } else { unroll(patch, &full, times) });
                 }
             }
         }

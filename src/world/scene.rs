@@ -72,6 +72,9 @@ struct TemplateText {
     name: Spanned<String>,
     key: Option<Spanned<char>>,
     colour: Option<Spanned<String>>,
+    /// How often its patches repeat in a period.
+    #[serde(default = "default_repeats")]
+    repeats: u32,
     #[serde(default)]
     ground: String,
     #[serde(default)]
@@ -149,6 +152,10 @@ fn default_side() -> Spanned<f32> {
 
 fn default_patterns() -> Spanned<i64> {
     Spanned::new(0..0, 4)
+}
+
+fn default_repeats() -> u32 {
+    1
 }
 
 fn default_radius() -> f32 {
@@ -271,6 +278,7 @@ impl SceneText {
             endless: self.endless,
             patterns: *self.patterns.get_ref() as u64,
             versions: self.versions.into(),
+            repeats: self.templates.iter().map(|t| t.get_ref().repeats).collect(),
             goals: self.goals.iter().map(|g| g.get_ref().goal()).collect(),
             seed: self.seed,
         }
@@ -287,6 +295,9 @@ impl SceneText {
         };
         if let Some(goal) = self.goals.first() {
             bad.add(goal.span(), "expected goals on a map only, found one on an area".into());
+        }
+        if self.templates.iter().any(|t| t.get_ref().repeats != 1) {
+            bad.add(area.span(), "expected templates that repeat on a map only, found one on an area".into());
         }
         if self.endless {
             bad.add(area.span(), "expected an area to end, found endless = true".into());

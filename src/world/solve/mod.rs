@@ -36,6 +36,8 @@ pub enum Method {
     Particles,
 }
 
+pub(super) use planner::STEP;
+
 /// What to spend on a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]

@@ -13,7 +13,7 @@ use crate::world::route::route;
 use crate::world::shape::Obstacle;
 
 /// Seconds between knots, about.
-const STEP: f64 = 0.2;
+pub(in crate::world) const STEP: f64 = 0.2;
 /// Weight of keeping apart, beside the squares of second differences.
 const PUSH: f64 = 3.0;
 /// Weight of what is over the limits of acceleration and turning.

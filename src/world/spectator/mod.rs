@@ -24,6 +24,8 @@ use ground::Grounds;
 const TICK: f64 = 0.1;
 /// People step aside who are no further away, metres.
 const SIGHT: f64 = 6.0;
+/// They mind everybody who is so much further away, metres.
+const BEYOND: f64 = 3.0;
 /// Seconds in which offsets fade before and after a border.
 const FADE: f64 = 1.6;
 /// A track with a gap of more seconds begins anew.
@@ -142,12 +144,14 @@ impl Spectator {
         push::decide(world, &mut self.grounds, secs, &body, &mut self.people);
     }
 
-    /// Stays of all in sight.
+    /// Stays of all in sight, and a little beyond.
     fn near(&self, world: &World, secs: f64) -> Vec<Stay> {
         let moment = world.moment(secs);
-        let stays = world.nearby().within(self.place, SIGHT).flat_map(|spot| stays(world, spot, &moment));
+        let stays = world.nearby().within(self.place, SIGHT + BEYOND).flat_map(|spot| stays(world, spot, &moment));
         stays
-            .filter(|&(stay, _)| ground::way(world, stay, secs).is_some_and(|(p, _)| p.distance(self.place) < SIGHT))
+            .filter(|&(stay, _)| {
+                ground::way(world, stay, secs).is_some_and(|(p, _)| p.distance(self.place) < SIGHT + BEYOND)
+            })
             .map(|(stay, _)| stay)
             .collect()
     }

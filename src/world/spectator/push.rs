@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use super::ground::{Grounds, way};
-use super::{Aside, Stay, TICK};
+use super::{Aside, SIGHT, Stay, TICK};
 use crate::stage::World;
 
 /// Greatest push, m/s2.
@@ -16,6 +16,8 @@ const LASTS: f64 = 0.5;
 const AHEAD: [f64; 8] = [TICK, 0.3, 0.5, 0.8, 1.1, 1.5, 2.0, 2.5];
 /// Room that people like to leave, metres.
 const MARGIN: f64 = 0.15;
+/// Nobody plans to come closer, metres: others step aside as well.
+const CLEAR: f64 = 0.06;
 /// How much somebody minds touching, against a metre off its way.
 const TOUCH: f64 = 60.0;
 /// Directions of pushes.
@@ -38,22 +40,32 @@ struct Walker {
     places: [DVec2; AHEAD.len()],
 }
 
+/// All that counts for a choice.
+struct Sight<'a> {
+    world: &'a World,
+    secs: f64,
+    body: &'a Body,
+    walkers: Vec<Walker>,
+    /// Of everybody's body.
+    radius: f64,
+}
+
 /// Chooses everybody's push for the tick that begins at `secs`.
 pub(super) fn decide(world: &World, grounds: &mut Grounds, secs: f64, body: &Body, people: &mut BTreeMap<Stay, Aside>) {
-    let walkers: Vec<Walker> =
-        people.iter().map(|(&stay, &aside)| Walker::new(world, grounds, stay, aside, secs)).collect();
+    let walkers = people.iter().map(|(&stay, &aside)| Walker::new(world, grounds, stay, aside, secs)).collect();
     let radius = f64::from(world.info().limits.radius);
-    let meant: Vec<DVec2> = (0..walkers.len())
-        .map(|me| {
-            let cost =
-                |grounds: &mut Grounds, push: DVec2| cost(world, grounds, secs, body, &walkers, me, push, radius);
-            let pushes = pushes(&walkers[me].aside);
-            let costs: Vec<f64> = pushes.iter().map(|&push| cost(grounds, push)).collect();
-            let best = (0..pushes.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).unwrap_or(0);
-            pushes[best]
-        })
-        .collect();
-    people.values_mut().zip(meant).for_each(|(aside, push)| aside.push = push);
+    let mut sight = Sight { world, secs, body, walkers, radius };
+    // Who is nearest has the least choice and goes first; the others know what it does.
+    let mut order: Vec<usize> = (0..sight.walkers.len()).collect();
+    let far = |me: usize| sight.walkers[me].ways[0].distance_squared(body.place);
+    order.sort_by(|&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
+    for me in order {
+        let push = sight.choose(grounds, me);
+        let own = &sight.walkers[me];
+        let places = std::array::from_fn(|i| own.place(world, grounds, secs, i, push));
+        (sight.walkers[me].places, sight.walkers[me].aside.push) = (places, push);
+    }
+    people.values_mut().zip(sight.walkers).for_each(|(aside, walker)| aside.push = walker.aside.push);
 }
 
 impl Walker {
@@ -93,49 +105,51 @@ fn pushes(aside: &Aside) -> Vec<DVec2> {
     all
 }
 
-/// What a push would come to.
-#[allow(clippy::too_many_arguments)]
-fn cost(
-    world: &World,
-    grounds: &mut Grounds,
-    secs: f64,
-    body: &Body,
-    walkers: &[Walker],
-    me: usize,
-    push: DVec2,
-    radius: f64,
-) -> f64 {
-    let own = &walkers[me];
-    let end = Aside { push, ..own.aside }.after(LASTS);
-    let far = (end.offset.length() - FARTHEST).max(0.0);
-    let mut sum =
-        0.6 * end.offset.length_squared() + 0.35 * end.velocity.length_squared() + 0.04 * push.length_squared();
-    sum += TOUCH * far * far;
-    for (i, &ahead) in AHEAD.iter().enumerate() {
-        let place = own.place(world, grounds, secs, i, push);
-        // What is far ahead may change.
-        let weight = 1.0 / (1.0 + ahead);
-        let spectator = place.distance(body.place + body.velocity * ahead) - body.radius - radius;
-        sum += weight * mind(spectator, 2.0 * MARGIN);
-        for (_, other) in walkers.iter().enumerate().filter(|&(j, _)| j != me) {
-            let before = own.ways[i].distance(other.ways[i]);
-            if before < 4.0 {
-                sum += weight
-                    * mind(
-                        place.distance(other.places[i]) - 2.0 * radius,
-                        MARGIN.min((before - 2.0 * radius).max(0.0)),
-                    );
-            }
+impl Sight<'_> {
+    /// Somebody's best push.
+    fn choose(&self, grounds: &mut Grounds, me: usize) -> DVec2 {
+        let own = &self.walkers[me];
+        if own.aside == Aside::default() && own.ways[0].distance(self.body.place) > SIGHT {
+            return DVec2::ZERO;
         }
-        let free = 2.0 * MARGIN;
-        sum += weight * mind(grounds.room(world, own.stay, own.ways[i], place, radius, free), MARGIN / 3.0);
+        let costs = pushes(&own.aside).into_iter().map(|push| (self.cost(grounds, me, push), push));
+        costs.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(DVec2::ZERO, |(_, push)| push)
     }
-    sum
+
+    /// What a push would come to.
+    fn cost(&self, grounds: &mut Grounds, me: usize, push: DVec2) -> f64 {
+        let own = &self.walkers[me];
+        let end = Aside { push, ..own.aside }.after(LASTS);
+        let far = (end.offset.length() - FARTHEST).max(0.0);
+        let effort = 0.6 * end.offset.length_squared()
+            + 0.35 * end.velocity.length_squared()
+            + 0.04 * push.length_squared()
+            + TOUCH * far * far;
+        // What is far ahead may change.
+        let weighed = AHEAD.iter().enumerate().map(|(i, ahead)| self.closeness(grounds, me, i, push) / (1.0 + ahead));
+        effort + weighed.sum::<f64>()
+    }
+
+    /// How much is too close some seconds ahead.
+    fn closeness(&self, grounds: &mut Grounds, me: usize, index: usize, push: DVec2) -> f64 {
+        let (own, ahead) = (&self.walkers[me], AHEAD[index]);
+        let place = own.place(self.world, grounds, self.secs, index, push);
+        let spectator = place.distance(self.body.place + self.body.velocity * ahead) - self.body.radius - self.radius;
+        let others = self.walkers.iter().enumerate().filter(|&(other, _)| other != me).map(|(_, other)| {
+            let before = own.ways[index].distance(other.ways[index]);
+            // Ways may lead closer than people like, but never into each other.
+            let room = (before - 2.0 * self.radius).max(0.0);
+            let gap = place.distance(other.places[index]) - 2.0 * self.radius;
+            if before < 4.0 { mind(gap, MARGIN.min(room), CLEAR.min(room)) } else { 0.0 }
+        });
+        let free = grounds.room(self.world, own.stay, own.ways[index], place, self.radius, 2.0 * MARGIN);
+        mind(spectator, 2.0 * MARGIN, CLEAR) + others.sum::<f64>() + mind(free, MARGIN / 3.0, 0.02)
+    }
 }
 
-/// How much somebody minds a gap, if it likes a margin.
-fn mind(gap: f64, margin: f64) -> f64 {
+/// How much somebody minds a gap, if it likes a margin and needs to keep clear.
+fn mind(gap: f64, margin: f64, clear: f64) -> f64 {
     let near = (margin - gap).max(0.0) / MARGIN;
-    let touch = if gap < 0.02 { 4.0 * (0.02 - gap) / MARGIN + 1.0 } else { 0.0 };
+    let touch = if gap < clear { 4.0 * (clear - gap) / MARGIN + 1.0 } else { 0.0 };
     near * near + TOUCH * touch
 }

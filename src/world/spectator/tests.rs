@@ -39,7 +39,7 @@ fn spots(world: &World) -> Vec<DVec2> {
 fn whoever_stands_is_walked_around() {
     let world = street();
     let (mut least, mut pairs, mut moved, mut met, mut spots_seen) = (f64::MAX, f64::MAX, 0, 0, 0);
-    let mut close = 0;
+    let (mut close, mut overlaps, mut samples, mut worst) = (0, 0, 0, String::new());
     for spot in spots(&world).into_iter().take(8) {
         spots_seen += 1;
         // People who are where the spectator appears need a moment.
@@ -51,8 +51,14 @@ fn whoever_stands_is_walked_around() {
             met += seen.iter().filter(|p| (p.place - p.aside).distance(spot) < 0.5).count();
             moved += seen.iter().filter(|p| p.aside.length() > 0.05).count();
             for (i, a) in seen.iter().enumerate() {
-                let near = seen[i + 1..].iter().map(|b| a.place.distance(b.place));
-                pairs = near.fold(pairs, f64::min);
+                for b in &seen[i + 1..] {
+                    let gap = a.place.distance(b.place);
+                    samples += 1;
+                    overlaps += usize::from(gap < 0.499);
+                    if gap < pairs {
+                        (pairs, worst) = (gap, format!("{a:?} {b:?} about {spot}"));
+                    }
+                }
             }
         }
     }
@@ -86,7 +92,7 @@ fn nobody_jumps_and_all_are_on_their_way_at_borders() {
     let mut crossed = 0;
     for seen in frames.iter().flatten() {
         let way = seen.place - seen.aside;
-        let border = (way - 4.0) / 8.0;
+        let border = way / 8.0;
         let gap = [border.x, border.y].map(|v| (v - v.round()).abs() * 8.0).into_iter().fold(f64::MAX, f64::min);
         if gap < 0.01 {
             crossed += 1;
