@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::ptr;
 
+use crowdquilt::patch::PatchSet;
 use crowdquilt::stage::World;
-use crowdquilt::world::{Layout, Plan, WorldScene, scenes};
+use crowdquilt::world::{Layout, Plan, WorldScene, gait_table, scenes, with_gait};
 use crowdquilt_capi::people::{CqPerson, CqQuat};
 use crowdquilt_capi::*;
 use glam::DVec2;
@@ -62,6 +63,37 @@ fn people_are_those_of_the_stage_in_any_copy_and_keep_their_id() {
         let steps: Vec<f64> = same.map(|(a, b)| (a.x - b.x).hypot(a.z - b.z)).collect();
         assert!(steps.len() * 10 > found.len() * 9 && steps.iter().all(|&step| step < 0.03));
     }
+    // SAFETY: opened above, used no more.
+    unsafe { cq_world_free(opened) };
+}
+
+#[test]
+fn bodies_stand_on_the_ground_where_people_are() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gait");
+    std::fs::create_dir_all(&folder).unwrap();
+    crowdquilt::samples::write(&folder, 1).unwrap();
+    let table = gait_table(&PatchSet::from_folder(&folder).unwrap()).unwrap();
+    let opened = open(&with_gait(&world(), table).unwrap().to_bytes());
+    let walking = |p: &&CqPerson| p.activity < 0;
+    let count = cq_joint_count();
+    for person in people(opened, 7.7, DVec2::new(30.0, 30.0), 10.0).iter().filter(walking) {
+        let (mut hips, mut turns, mut joints) =
+            ([0.0_f32; 3], vec![CqQuat::default(); count], vec![0.0_f32; 3 * count]);
+        // SAFETY: as much room as the header says.
+        unsafe {
+            assert_eq!(cq_world_has_bodies(opened), 1);
+            assert_eq!(cq_world_pose(opened, 7.7, person, hips.as_mut_ptr(), turns.as_mut_ptr()), 0, "{}", message());
+            assert_eq!(cq_world_joints(opened, 7.7, person, joints.as_mut_ptr()), 0);
+        }
+        assert!(turns.iter().all(|q| (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w - 1.0).abs() < 1e-3));
+        assert_eq!(hips, joints[..3]);
+        assert!((0.7..1.2).contains(&hips[1]) && hips[0].hypot(hips[2]) < 0.4, "{hips:?}");
+        let heights = || joints.chunks_exact(3).map(|p| p[1]);
+        assert!((-0.05..0.2).contains(&heights().fold(f32::MAX, f32::min)));
+        assert!((1.3..2.0).contains(&heights().fold(f32::MIN, f32::max)));
+    }
+    let parents: Vec<i32> = (0..count).map(cq_joint_parent).collect();
+    assert!(parents[0] == -1 && parents.iter().enumerate().skip(1).all(|(i, &p)| p >= 0 && (p as usize) < i));
     // SAFETY: opened above, used no more.
     unsafe { cq_world_free(opened) };
 }
