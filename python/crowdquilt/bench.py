@@ -13,7 +13,7 @@ from statistics import median
 
 from rich.table import Table
 
-from crowdquilt import motion, patch, refine, samples
+from crowdquilt import bench_steering, motion, patch, refine, samples
 from crowdquilt._core import PatchSet, Scene, measure_patches, measure_poses, measure_replay, measure_street, tile
 from crowdquilt.bench_row import Row, row
 from crowdquilt.bench_tiling import EXAMPLES, PAPER, STATIC, example, growth, planes, repeating, static
@@ -172,6 +172,7 @@ def stage(seeds: int, say: Say) -> list[Row]:
     rows.append(
         row("stage", "replay-poses: a full body (22 joints)", nanos / 1e3, "us", 1.06, "ozz-animation, 31 joints")
     )
+    others = bench_steering.measured(say)
     for name, kinds, unique in (("1,000 shared kinds", 1000, False), ("unique patches", 1000, True)):
         runs = [measure_replay(1_000_000, kinds, unique) for _ in range(max(1, seeds // 2))]
         people, _, memory = runs[0][:3]
@@ -179,6 +180,9 @@ def stage(seeds: int, say: Say) -> list[Row]:
         say(f"stage: {name}: {early / 1e6:.0f} M root samples/s")
         rows.append(row("stage", f"replay-roots, {name}: at 1 s", early / 1e6, "M/s", 1.5, steering))
         rows.append(row("stage", f"replay-roots, {name}: at 1 h", late / 1e6, "M/s", 1.5, steering))
+        for other, rate in others.items():
+            source = f"{other} on the same street, here and now: agent-steps"
+            rows.append(row("stage", f"replay-roots, {name}: beside {other}", early / 1e6, "M/s", rate / 1e6, source))
         rows.append(row("stage", f"{name}: people", people))
         rows.append(row("stage", f"{name}: in memory", memory / 1e6, "MB", 600.0 if unique else 64.0, TARGET))
         rows.append(row("stage", f"random-access, {name}: a patch at any time", single, "us"))

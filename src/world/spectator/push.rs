@@ -13,11 +13,11 @@ pub(super) const PUSH: f64 = 1.6;
 /// Seconds that a push is thought to last.
 const LASTS: f64 = 0.5;
 /// Seconds ahead that count.
-const AHEAD: [f64; 8] = [TICK, 0.3, 0.5, 0.8, 1.1, 1.5, 2.0, 2.5];
+const AHEAD: [f64; 11] = [TICK, 0.2, 0.3, 0.4, 0.55, 0.7, 0.9, 1.2, 1.6, 2.0, 2.5];
 /// Room that people like to leave, metres.
 const MARGIN: f64 = 0.15;
 /// Nobody plans to come closer, metres: others step aside as well.
-const CLEAR: f64 = 0.06;
+const CLEAR: f64 = 0.09;
 /// How much somebody minds touching, against a metre off its way.
 const TOUCH: f64 = 60.0;
 /// Directions of pushes.
