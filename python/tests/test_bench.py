@@ -7,7 +7,7 @@ from dataclasses import fields
 import pytest
 
 import crowdquilt as cq
-from crowdquilt import bench, bench_tiling
+from crowdquilt import bench, bench_steering, bench_tiling
 
 
 def test_rows_are_measured_on_the_scene(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -56,3 +56,25 @@ def test_rows_are_measured_on_the_scene(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_row_fields() -> None:
     assert [f.name for f in fields(bench.Row)] == ["area", "row", "ours", "unit", "reference", "source", "ratio"]
+
+
+def test_steering_that_is_missing_is_skipped_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(world: cq.World) -> float:
+        raise ImportError(world.name)
+
+    def there(world: cq.World) -> float:
+        places, velocities = bench_steering.people(world)
+        assert len(places) == len(velocities) > 50
+        return bench_steering.timed(len(places), lambda: sum(range(1000)))
+
+    said: list[str] = []
+    monkeypatch.setattr(bench_steering, "LIBRARIES", {"pyrvo": missing, "numpy": there})
+    found = bench_steering.measured(said.append)
+    assert [name.split()[0] for name in found] == ["numpy"] and min(found.values()) > 0
+    assert "pyrvo: skipped" in said[0] and "M agent-steps/s" in said[1]
+
+
+@pytest.mark.parametrize("name", ["pyrvo", "jupedsim"])
+def test_steering_walks_on_the_street(name: str) -> None:
+    pytest.importorskip(name, reason=f"{name} is not installed")
+    assert bench_steering.LIBRARIES[name](bench_steering.street()) > 100
