@@ -24,8 +24,8 @@ use ground::Grounds;
 const TICK: f64 = 0.1;
 /// People step aside who are no further away, metres.
 const SIGHT: f64 = 6.0;
-/// They mind everybody who is so much further away, metres.
-const BEYOND: f64 = 3.0;
+/// They mind everybody who is so much further away, metres: who leaves sight needs some steps to get back to its way.
+const BEYOND: f64 = 8.0;
 /// Seconds in which offsets fade before and after a border.
 const FADE: f64 = 1.6;
 /// A track with a gap of more seconds begins anew.

@@ -22,6 +22,8 @@ const CLEAR: f64 = 0.09;
 const TOUCH: f64 = 60.0;
 /// Directions of pushes.
 const DIRECTIONS: usize = 12;
+/// Nobody further away than this, metres, is met within the time that counts.
+const NEAR: f64 = 8.0;
 /// Offsets are no larger, metres.
 const FARTHEST: f64 = 1.6;
 
@@ -112,13 +114,14 @@ impl Sight<'_> {
         if own.aside == Aside::default() && own.ways[0].distance(self.body.place) > SIGHT {
             return DVec2::ZERO;
         }
-        let costs = pushes(&own.aside).into_iter().map(|push| (self.cost(grounds, me, push), push));
+        let near = |other: &&Walker| own.ways[0].distance(other.ways[0]) < NEAR && own.stay != other.stay;
+        let others: Vec<&Walker> = self.walkers.iter().filter(near).collect();
+        let costs = pushes(&own.aside).into_iter().map(|push| (self.cost(grounds, own, &others, push), push));
         costs.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(DVec2::ZERO, |(_, push)| push)
     }
 
     /// What a push would come to.
-    fn cost(&self, grounds: &mut Grounds, me: usize, push: DVec2) -> f64 {
-        let own = &self.walkers[me];
+    fn cost(&self, grounds: &mut Grounds, own: &Walker, others: &[&Walker], push: DVec2) -> f64 {
         let end = Aside { push, ..own.aside }.after(LASTS);
         let far = (end.offset.length() - FARTHEST).max(0.0);
         let effort = 0.6 * end.offset.length_squared()
@@ -126,16 +129,17 @@ impl Sight<'_> {
             + 0.04 * push.length_squared()
             + TOUCH * far * far;
         // What is far ahead may change.
-        let weighed = AHEAD.iter().enumerate().map(|(i, ahead)| self.closeness(grounds, me, i, push) / (1.0 + ahead));
+        let weighed =
+            AHEAD.iter().enumerate().map(|(i, ahead)| self.closeness(grounds, own, others, (i, push)) / (1.0 + ahead));
         effort + weighed.sum::<f64>()
     }
 
     /// How much is too close some seconds ahead.
-    fn closeness(&self, grounds: &mut Grounds, me: usize, index: usize, push: DVec2) -> f64 {
-        let (own, ahead) = (&self.walkers[me], AHEAD[index]);
+    fn closeness(&self, grounds: &mut Grounds, own: &Walker, others: &[&Walker], (index, push): (usize, DVec2)) -> f64 {
+        let ahead = AHEAD[index];
         let place = own.place(self.world, grounds, self.secs, index, push);
         let spectator = place.distance(self.body.place + self.body.velocity * ahead) - self.body.radius - self.radius;
-        let others = self.walkers.iter().enumerate().filter(|&(other, _)| other != me).map(|(_, other)| {
+        let others = others.iter().map(|other| {
             let before = own.ways[index].distance(other.ways[index]);
             // Ways may lead closer than people like, but never into each other.
             let room = (before - 2.0 * self.radius).max(0.0);
