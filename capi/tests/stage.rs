@@ -92,7 +92,7 @@ fn bodies_stand_on_the_ground_where_people_are() {
         assert!((-0.05..0.2).contains(&heights().fold(f32::MAX, f32::min)));
         assert!((1.3..2.0).contains(&heights().fold(f32::MIN, f32::max)));
     }
-    let parents: Vec<i32> = (0..count).map(cq_joint_parent).collect();
+    let parents: Vec<i32> = (0..count).map(|joint| cq_joint_parent(joint)).collect();
     assert!(parents[0] == -1 && parents.iter().enumerate().skip(1).all(|(i, &p)| p >= 0 && (p as usize) < i));
     // SAFETY: opened above, used no more.
     unsafe { cq_world_free(opened) };
