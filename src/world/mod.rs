@@ -36,6 +36,7 @@ mod area;
 mod assign;
 mod bake;
 mod band;
+mod footprints;
 mod frame;
 mod furnish;
 mod gait;

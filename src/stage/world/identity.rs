@@ -135,6 +135,17 @@ impl Identities {
         self.crossings[crossing].laps.into()
     }
 
+    /// Copies of the world since the cycle's begin of a crossing, and copies once around the cycle.
+    pub(super) fn copies(&self, crossing: usize) -> ([i32; 2], [i32; 2]) {
+        let place = self.crossings[crossing];
+        (place.copies, self.cycles[place.cycle as usize].copies)
+    }
+
+    /// Periods once around a cycle; 0 if it leads out of the world.
+    pub(super) fn around(&self, cycle: u32) -> i64 {
+        self.cycles[cycle as usize].people.into()
+    }
+
     /// Whether a cycle is a way through the world rather than a round in it.
     pub fn leads_out(&self, cycle: u32) -> bool {
         self.cycles[cycle as usize].people == 0

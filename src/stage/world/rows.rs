@@ -206,6 +206,18 @@ impl Index {
         (both(&moment.place), both(&moment.velocity))
     }
 
+    /// Where the control points of a lane are in a slot that it is present in: its x in the first of four rows, how far behind its z
+    /// is, and from row to row.
+    pub fn find(&self, tables: &Tables, kind: usize, slot: usize, lane: Lane) -> Option<[usize; 3]> {
+        let (page, step) = (slot / tables.info.page as usize, slot % tables.info.page as usize);
+        let index = page * tables.kinds() + kind;
+        let first = if index == 0 { 0 } else { tables.lane_ends[index - 1] as usize };
+        let lanes = &tables.lanes[first..tables.lane_ends[index] as usize];
+        let number = lanes.iter().position(|&other| other == lane.0)?;
+        let Page { begin, row, lane: base } = self.pages[page];
+        Some([begin + step * row + 2 * (first - base) + number, lanes.len(), row])
+    }
+
     pub fn bytes(&self) -> usize {
         8 * (self.runs.len() + self.strides.len() + self.turns.len()) + 24 * self.pages.len() + 4 * self.people.len()
     }

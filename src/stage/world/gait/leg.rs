@@ -1,0 +1,138 @@
+//! A pose whose legs reach the feet.
+//!
+//! A leg that would have to be longer than it is does what people do: the hips come down a little, then the heel comes up
+//! while the ball of the foot stays. Toes do not go through the floor.
+
+use glam::{Quat, Vec2, Vec3};
+
+use super::feet::Foot;
+use crate::motion::ik::two_bone;
+use crate::motion::{JOINT_COUNT, canonical, joint};
+
+/// Largest part of a leg's length that is used, so that knees never lock.
+const STRETCH: f32 = 0.995;
+/// Most that hips come down before heels come up, metres.
+const LOWERING: f32 = 0.045;
+/// Over so many metres the hips begin to come down.
+const EASE: f32 = 0.012;
+/// Most that a heel is lifted, as a turn of the foot about its ball, radians.
+const LIFT: f32 = 0.45;
+/// Height below which an ankle's heel would be in the floor, metres.
+const HEEL: f32 = 0.06;
+/// How far the tips of toes may sink into the floor, metres.
+const TOES: f32 = 0.005;
+
+/// A leg, in the world's directions, relative to where its owner is.
+struct Leg {
+    up: usize,
+    hip: Vec3,
+    knee: Vec3,
+    ankle: Vec3,
+    /// Rotations of thigh, shin, foot and toes.
+    turns: [Quat; 4],
+    /// Where the ball is to be, and how the foot is to be turned there.
+    ball: Vec3,
+    foot: Quat,
+}
+
+/// Leads the legs of a `pose` (its hips turned in the world, at `root`) to the `feet`; returns by how much the hips come down.
+/// `turn` is where the body looks.
+pub(super) fn lead(pose: &mut [Quat; JOINT_COUNT], root: Vec3, turn: Quat, feet: &[Foot; 2]) -> f32 {
+    let mut legs = [Leg::new(pose, root, turn, joint::LEFT_UP_LEG, &feet[0]), Leg::new(pose, root, turn, joint::RIGHT_UP_LEG, &feet[1])];
+    let lowering = eased(legs[0].lowering().max(legs[1].lowering())).min(LOWERING);
+    for leg in &mut legs {
+        leg.hip.y -= lowering;
+        leg.knee.y -= lowering;
+        leg.ankle.y -= lowering;
+        leg.bend(pose);
+    }
+    lowering
+}
+
+/// `need` where it is large, 0 where there is none, without an edge.
+fn eased(need: f32) -> f32 {
+    let over = (need + EASE).max(0.0);
+    if need > EASE { need } else { over * over / (4.0 * EASE) }
+}
+
+impl Leg {
+    fn new(pose: &[Quat; JOINT_COUNT], root: Vec3, turn: Quat, up: usize, foot: &Foot) -> Self {
+        let joints = &canonical().joints;
+        let thigh = pose[0] * pose[up];
+        let shin = thigh * pose[up + 1];
+        let own = shin * pose[up + 2];
+        let hip = root + pose[0] * joints[up].offset;
+        let knee = hip + thigh * joints[up + 1].offset;
+        let ankle = knee + shin * joints[up + 2].offset;
+        let aside = aside(turn, foot.ahead);
+        let turned = aside * own;
+        let mut ball = foot.ball;
+        // A heel that strikes the floor before the ball does not go through it.
+        ball.y += (HEEL - (ball.y - (turned * joints[up + 3].offset).y)).max(0.0);
+        Self { up, hip, knee, ankle, turns: [thigh, shin, turned, turned * pose[up + 3]], ball, foot: turned }
+    }
+
+    fn target(&self) -> Vec3 {
+        self.ball - self.foot * canonical().joints[self.up + 3].offset
+    }
+
+    fn reach(&self) -> f32 {
+        let joints = &canonical().joints;
+        (joints[self.up + 1].offset.y + joints[self.up + 2].offset.y).abs() * STRETCH
+    }
+
+    /// How far the hips should come down for the foot to be in reach; negative where it is nearer than that.
+    fn lowering(&self) -> f32 {
+        let (target, reach) = (self.target(), self.reach());
+        let across = (target - self.hip).with_y(0.0).length_squared();
+        self.hip.y - target.y - (reach * reach - across).max(0.0).sqrt()
+    }
+
+    /// Turns the foot about its ball until the ankle is in reach, as far as it goes.
+    fn lift_heel(&mut self) {
+        let (target, reach) = (self.target(), self.reach());
+        let (bone, to_hip) = (target - self.ball, self.hip - self.ball);
+        if target.distance_squared(self.hip) <= reach * reach {
+            return;
+        }
+        let (foot, whole) = (bone.length(), to_hip.length());
+        let cosine = (foot * foot + whole * whole - reach * reach) / (2.0 * foot * whole);
+        let angle = (bone.angle_between(to_hip) - cosine.clamp(-1.0, 1.0).acos()).clamp(0.0, LIFT);
+        let axis = bone.cross(to_hip).normalize_or_zero();
+        self.foot = Quat::from_axis_angle(if axis == Vec3::ZERO { Vec3::X } else { axis }, angle) * self.foot;
+    }
+
+    fn bend(&mut self, pose: &mut [Quat; JOINT_COUNT]) {
+        self.lift_heel();
+        let pole = self.turns[0] * Vec3::Z;
+        let (swing, bend, _) = two_bone(self.hip, self.knee, self.ankle, self.target(), pole, 0.9999);
+        let (thigh, shin) = (swing * self.turns[0], swing * bend * self.turns[1]);
+        let up = self.up;
+        pose[up] = (pose[0].conjugate() * thigh).normalize();
+        pose[up + 1] = (thigh.conjugate() * shin).normalize();
+        pose[up + 2] = (shin.conjugate() * self.foot).normalize();
+        pose[up + 3] = (self.foot.conjugate() * self.toes()).normalize();
+    }
+
+    /// How the toes are turned: as they were, but not into the floor.
+    fn toes(&self) -> Quat {
+        let turn = self.turns[3];
+        let tip = turn * canonical().joints[self.up + 3].tip.unwrap_or(Vec3::ZERO);
+        let lowest = -TOES - self.ball.y;
+        if tip.y >= lowest {
+            return turn;
+        }
+        let slope = |y: f32| (y / tip.length()).clamp(-1.0, 1.0).asin();
+        let axis = tip.cross(Vec3::Y).try_normalize().unwrap_or(turn * Vec3::NEG_X);
+        Quat::from_axis_angle(axis, slope(lowest) - slope(tip.y)) * turn
+    }
+}
+
+/// The turn about the vertical from where a body looks to where its foot looks.
+fn aside(turn: Quat, ahead: Vec2) -> Quat {
+    let body = turn * Vec3::Z;
+    let (sine, cosine) = (ahead.x * body.z - ahead.y * body.x, ahead.x * body.x + ahead.y * body.z);
+    let length = (sine * sine + cosine * cosine).sqrt();
+    // Of half the angle. A foot that looked straight back would be on the wrong leg.
+    Quat::from_xyzw(0.0, sine, 0.0, (length + cosine).max(1e-3)).normalize()
+}
