@@ -46,6 +46,7 @@ impl GaitTable {
     }
 
     /// Where a foot stands in the middle of its stance.
+    #[inline]
     fn print(&self, foot: usize, at: &Instant) -> Vec2 {
         let (low, fast) = self.between(at.speed);
         let own = self.prints[low][foot].lerp(self.prints[low + 1][foot], fast);
@@ -55,6 +56,7 @@ impl GaitTable {
 }
 
 impl Swing {
+    #[inline]
     fn towards(self, other: Self, share: f32) -> Self {
         Self {
             share: self.share + (other.share - self.share) * share,
@@ -72,7 +74,8 @@ impl World {
         }
         let between = table.between(body.velocity.length());
         let foot = |foot: usize| {
-            let since = (body.phase - 0.5 * foot as f32).rem_euclid(1.0);
+            let since = body.phase - 0.5 * foot as f32;
+            let since = if since < 0.0 { since + 1.0 } else { since };
             let swing = table.swing(between, foot, since);
             // Whoever stands on a footprint needs to know that one alone.
             let print = |cycles: f32| {

@@ -6,7 +6,6 @@
 use glam::{Quat, Vec2, Vec3};
 
 use super::feet::Foot;
-use crate::motion::ik::two_bone;
 use crate::motion::{JOINT_COUNT, canonical, joint};
 
 /// Largest part of a leg's length that is used, so that knees never lock.
@@ -19,6 +18,8 @@ const EASE: f32 = 0.012;
 const LIFT: f32 = 0.45;
 /// Height below which an ankle's heel would be in the floor, metres.
 const HEEL: f32 = 0.06;
+/// The hinge of a knee that is bent less than this (its sine) is as much that which its thigh has at rest.
+const STRAIGHT: f32 = 0.1;
 /// How far the tips of toes may sink into the floor, metres.
 const TOES: f32 = 0.005;
 
@@ -104,14 +105,27 @@ impl Leg {
 
     fn bend(&mut self, pose: &mut [Quat; JOINT_COUNT]) {
         self.lift_heel();
-        let pole = self.turns[0] * Vec3::Z;
-        let (swing, bend, _) = two_bone(self.hip, self.knee, self.ankle, self.target(), pole, 0.9999);
-        let (thigh, shin) = (swing * self.turns[0], swing * bend * self.turns[1]);
+        let [thigh, shin] = self.reached();
         let up = self.up;
         pose[up] = (pose[0].conjugate() * thigh).normalize();
         pose[up + 1] = (thigh.conjugate() * shin).normalize();
         pose[up + 2] = (shin.conjugate() * self.foot).normalize();
         pose[up + 3] = (self.foot.conjugate() * self.toes()).normalize();
+    }
+
+    /// Rotations of thigh and shin that bring the ankle to its target: the knee opens or closes about its hinge, then all of the leg
+    /// swings. Nothing but square roots: this runs for everybody in every frame.
+    fn reached(&self) -> [Quat; 2] {
+        let (thigh, shin, way) = (self.knee - self.hip, self.ankle - self.knee, self.target() - self.hip);
+        let [a, b, now] = [thigh, shin, thigh + shin].map(Vec3::length_squared);
+        let most = (a.sqrt() + b.sqrt()) * 0.9999;
+        let then = way.length_squared().clamp(0.01, most * most);
+        let hinge = thigh.cross(shin) + self.turns[0] * Vec3::X * (STRAIGHT * (a * b).sqrt());
+        let hinge = hinge.normalize_or(Vec3::X);
+        let open = turned(hinge, angle(a, then, b), angle(a, now, b));
+        let close = turned(hinge, angle(b, now, a), angle(b, then, a));
+        let swing = arc(open * thigh + close * shin, way);
+        [swing * open * self.turns[0], swing * close * self.turns[1]]
     }
 
     /// How the toes are turned: as they were, but not into the floor.
@@ -126,6 +140,24 @@ impl Leg {
         let axis = tip.cross(Vec3::Y).try_normalize().unwrap_or(turn * Vec3::NEG_X);
         Quat::from_axis_angle(axis, slope(lowest) - slope(tip.y)) * turn
     }
+}
+
+/// Cosine and sine of a triangle's angle between the sides `a` and `b`, opposite to `c`; all squared.
+fn angle(a: f32, b: f32, c: f32) -> [f32; 2] {
+    let cosine = ((a + b - c) / (2.0 * (a * b).sqrt())).clamp(-1.0, 1.0);
+    [cosine, (1.0 - cosine * cosine).sqrt()]
+}
+
+/// The turn about an `axis` from one angle to another.
+fn turned(axis: Vec3, [from, from_sine]: [f32; 2], [to, to_sine]: [f32; 2]) -> Quat {
+    let (cosine, sine) = (from * to + from_sine * to_sine, to_sine * from - to * from_sine);
+    Quat::from_vec4((axis * sine).extend(1.0 + cosine)).normalize()
+}
+
+/// The least turn from one direction to another.
+fn arc(from: Vec3, to: Vec3) -> Quat {
+    let whole = (from.length_squared() * to.length_squared()).sqrt();
+    Quat::from_vec4(from.cross(to).extend((whole + from.dot(to)).max(1e-6))).normalize()
 }
 
 /// The turn about the vertical from where a body looks to where its foot looks.

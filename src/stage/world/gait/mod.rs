@@ -108,7 +108,7 @@ impl GaitTable {
     /// The pose at a speed and phase, and the hips relative to where somebody is. No allocation.
     pub fn pose(&self, speed: f32, phase: f32, pose: &mut [Quat; JOINT_COUNT]) -> Vec3 {
         let (low, fast) = self.between(speed);
-        let at = phase.rem_euclid(1.0) * self.phases as f32;
+        let at = phase.clamp(0.0, 1.0) * self.phases as f32;
         let first = (at as usize).min(self.phases - 1);
         let late = at - first as f32;
         let next = if first + 1 < self.phases { first + 1 } else { 0 };
@@ -214,7 +214,7 @@ impl World {
                 place: rotation.rotate(place),
                 velocity: rotation.rotate(velocity),
                 heading,
-                phase: stay.phase(gait, slot, fraction).rem_euclid(1.0),
+                phase: fraction_of(stay.phase(gait, slot, fraction)),
                 feet: None,
             };
             Some(Walking { feet: self.feet(gait, &stay, (slot, fraction), &body), ..body })
@@ -222,6 +222,12 @@ impl World {
     }
 }
 
+/// What a phase is beyond whole cycles. Phases are not below zero, so this needs no call of the system's mathematics.
+fn fraction_of(phase: f32) -> f32 {
+    phase - phase as i32 as f32
+}
+
+#[inline]
 fn mixed(a: i16, b: i16, share: f32) -> f32 {
     f32::from(a) + (f32::from(b) - f32::from(a)) * share
 }

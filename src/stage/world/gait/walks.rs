@@ -159,6 +159,7 @@ impl Ways {
 }
 
 impl Stay {
+    #[inline]
     /// Where it looks, radians, in slot number `slot` of the stay.
     pub fn heading(&self, gait: &Gait, slot: i32, share: f32) -> f32 {
         let at = (self.first as i32 + slot) as usize;
@@ -166,11 +167,13 @@ impl Stay {
         (f32::from(from) + f32::from(to.wrapping_sub(from)) * share) / PER_RADIAN - self.turn
     }
 
+    #[inline]
     /// Its phase, counted on from that which it came in with.
     pub fn phase(&self, gait: &Gait, slot: i32, share: f32) -> f32 {
         self.phase + self.steps(gait, slot, share) / STEPS_PER_CYCLE * self.pace
     }
 
+    #[inline]
     fn steps(&self, gait: &Gait, slot: i32, share: f32) -> f32 {
         let at = (self.first as i32 + slot) as usize;
         mixed(gait.steps[at], gait.steps[at + 1], share)
@@ -214,6 +217,7 @@ impl World {
         self.instant(gait, &stay, slot, (target - from) / (to - from).max(1.0))
     }
 
+    #[inline]
     /// How somebody is at a share of a slot of its stay; straight on, before and after what is known of it.
     fn instant(&self, gait: &Gait, stay: &Stay, slot: i32, share: f32) -> Instant {
         let (inside, slots) = (share.clamp(0.0, 1.0), self.info().slots);
