@@ -39,9 +39,9 @@ impl Moment {
 #[inline(always)]
 pub(super) fn weights(u: f32) -> ([f32; 4], [f32; 4]) {
     let v = 1.0 - u;
-    let place = [v * v * v, (3.0 * u - 6.0) * u * u + 4.0, ((-3.0 * u + 3.0) * u + 3.0) * u + 1.0, u * u * u];
+    let (b, c) = ((3.0 * u - 6.0) * u * u + 4.0, ((-3.0 * u + 3.0) * u + 3.0) * u + 1.0);
     let velocity = [-0.5 * v * v, (1.5 * u - 2.0) * u, (-1.5 * u + 1.0) * u + 0.5, 0.5 * u * u];
-    (place.map(|w| w / 6.0), velocity)
+    ([v * v * v / 6.0, b / 6.0, c / 6.0, u * u * u / 6.0], velocity)
 }
 
 #[cfg(test)]

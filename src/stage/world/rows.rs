@@ -198,9 +198,10 @@ impl Index {
         let slot = moment.slot as usize;
         let run = self.runs[slot * tables.kinds() + kind];
         let at = run.at as usize + lane;
-        let weighed = |weights: &[f32; 4], at: usize| -> f32 {
-            let rows = weights.iter().enumerate().map(|(r, w)| w * f32::from(tables.rows[at + r * self.strides[slot]]));
-            rows.sum::<f32>() * tables.info.metres_per_unit
+        let (rows, n, unit) = (&tables.rows, self.strides[slot], tables.info.metres_per_unit);
+        let row = |at: usize| f32::from(rows[at]);
+        let weighed = |w: &[f32; 4], at: usize| -> f32 {
+            (w[0] * row(at) + w[1] * row(at + n) + w[2] * row(at + 2 * n) + w[3] * row(at + 3 * n)) * unit
         };
         let both = |weights| Vec2::new(weighed(weights, at), weighed(weights, at + usize::from(run.lanes)));
         (both(&moment.place), both(&moment.velocity))

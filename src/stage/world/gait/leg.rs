@@ -57,6 +57,7 @@ fn eased(need: f32) -> f32 {
 }
 
 impl Leg {
+    #[inline]
     fn new(pose: &[Quat; JOINT_COUNT], root: Vec3, turn: Quat, up: usize, foot: &Foot) -> Self {
         let joints = &canonical().joints;
         let thigh = pose[0] * pose[up];
@@ -73,15 +74,18 @@ impl Leg {
         Self { up, hip, knee, ankle, turns: [thigh, shin, turned, turned * pose[up + 3]], ball, foot: turned }
     }
 
+    #[inline]
     fn target(&self) -> Vec3 {
         self.ball - self.foot * canonical().joints[self.up + 3].offset
     }
 
+    #[inline]
     fn reach(&self) -> f32 {
         let joints = &canonical().joints;
         (joints[self.up + 1].offset.y + joints[self.up + 2].offset.y).abs() * STRETCH
     }
 
+    #[inline]
     /// How far the hips should come down for the foot to be in reach; negative where it is nearer than that.
     fn lowering(&self) -> f32 {
         let (target, reach) = (self.target(), self.reach());
@@ -104,30 +108,45 @@ impl Leg {
     }
 
     fn bend(&mut self, pose: &mut [Quat; JOINT_COUNT]) {
+        let flat = self.foot;
         self.lift_heel();
         let [thigh, shin] = self.reached();
-        let up = self.up;
-        pose[up] = (pose[0].conjugate() * thigh).normalize();
-        pose[up + 1] = (thigh.conjugate() * shin).normalize();
-        pose[up + 2] = (shin.conjugate() * self.foot).normalize();
-        pose[up + 3] = (self.foot.conjugate() * self.toes()).normalize();
+        let (up, toes) = (self.up, self.toes());
+        pose[up] = pose[0].conjugate() * thigh;
+        pose[up + 1] = thigh.conjugate() * shin;
+        pose[up + 2] = shin.conjugate() * self.foot;
+        if toes != self.turns[3] || self.foot != flat {
+            pose[up + 3] = (self.foot.conjugate() * toes).normalize();
+        }
     }
 
     /// Rotations of thigh and shin that bring the ankle to its target: the knee opens or closes about its hinge, then all of the leg
-    /// swings. Nothing but square roots: this runs for everybody in every frame.
+    /// swings. A few square roots and nothing else: this runs for everybody in every frame.
+    #[inline]
     fn reached(&self) -> [Quat; 2] {
         let (thigh, shin, way) = (self.knee - self.hip, self.ankle - self.knee, self.target() - self.hip);
-        let [a, b, now] = [thigh, shin, thigh + shin].map(Vec3::length_squared);
-        let most = (a.sqrt() + b.sqrt()) * 0.9999;
-        let then = way.length_squared().clamp(0.01, most * most);
-        let hinge = thigh.cross(shin) + self.turns[0] * Vec3::X * (STRAIGHT * (a * b).sqrt());
-        let hinge = hinge.normalize_or(Vec3::X);
-        let open = turned(hinge, angle(a, then, b), angle(a, now, b));
-        let close = turned(hinge, angle(b, now, a), angle(b, then, a));
-        let swing = arc(open * thigh + close * shin, way);
+        let joints = &canonical().joints;
+        let (a, b) = (joints[self.up + 1].offset.length(), joints[self.up + 2].offset.length());
+        let (a2, b2, now) = (a * a, b * b, (thigh + shin).length_squared());
+        let (most, far) = ((a + b) * 0.9999, way.length());
+        let reach = far.clamp(0.1, most);
+        let then = reach * reach;
+        // Of the triangles of hip, knee and ankle before and after: twice their areas, and products of sides with cosines between.
+        let cross = thigh.cross(shin);
+        let before = Triangle { area: cross.length(), hip: 0.5 * (a2 + now - b2), ankle: 0.5 * (b2 + now - a2) };
+        let hip = 0.5 * (a2 + then - b2);
+        let after = Triangle { area: (a2 * then - hip * hip).max(0.0).sqrt(), hip, ankle: 0.5 * (b2 + then - a2) };
+        let hinge = (cross + self.turns[0] * Vec3::X * (STRAIGHT * a * b)).normalize_or(Vec3::X);
+        let whole = now.sqrt() * reach;
+        let open = turned(hinge, [after.hip, after.area], [before.hip, before.area], a2 * whole);
+        let close = turned(hinge, [before.ankle, before.area], [after.ankle, after.area], b2 * whole);
+        let from = open * thigh + close * shin;
+        let arc = from.cross(way).extend((reach * far + from.dot(way)).max(1e-6));
+        let swing = Quat::from_vec4(arc).normalize();
         [swing * open * self.turns[0], swing * close * self.turns[1]]
     }
 
+    #[inline]
     /// How the toes are turned: as they were, but not into the floor.
     fn toes(&self) -> Quat {
         let turn = self.turns[3];
@@ -142,22 +161,18 @@ impl Leg {
     }
 }
 
-/// Cosine and sine of a triangle's angle between the sides `a` and `b`, opposite to `c`; all squared.
-fn angle(a: f32, b: f32, c: f32) -> [f32; 2] {
-    let cosine = ((a + b - c) / (2.0 * (a * b).sqrt())).clamp(-1.0, 1.0);
-    [cosine, (1.0 - cosine * cosine).sqrt()]
+/// A leg's triangle: twice its area, and products of the sides at the hip and at the ankle with the cosine between them.
+struct Triangle {
+    area: f32,
+    hip: f32,
+    ankle: f32,
 }
 
-/// The turn about an `axis` from one angle to another.
-fn turned(axis: Vec3, [from, from_sine]: [f32; 2], [to, to_sine]: [f32; 2]) -> Quat {
+/// The turn about an `axis` from one angle to another, given as cosines and sines times lengths whose product is `whole`.
+#[inline]
+fn turned(axis: Vec3, [from, from_sine]: [f32; 2], [to, to_sine]: [f32; 2], whole: f32) -> Quat {
     let (cosine, sine) = (from * to + from_sine * to_sine, to_sine * from - to * from_sine);
-    Quat::from_vec4((axis * sine).extend(1.0 + cosine)).normalize()
-}
-
-/// The least turn from one direction to another.
-fn arc(from: Vec3, to: Vec3) -> Quat {
-    let whole = (from.length_squared() * to.length_squared()).sqrt();
-    Quat::from_vec4(from.cross(to).extend((whole + from.dot(to)).max(1e-6))).normalize()
+    Quat::from_vec4((axis * sine).extend(whole + cosine)).normalize()
 }
 
 /// The turn about the vertical from where a body looks to where its foot looks.

@@ -100,7 +100,10 @@ impl GaitTable {
     /// The cycle below a speed, and how far to the next.
     fn between(&self, speed: f32) -> (usize, f32) {
         let last = self.speeds.len() - 2;
-        let low = self.speeds[1..=last].iter().take_while(|&&s| s <= speed).count().min(last);
+        let mut low = 0;
+        while low < last && self.speeds[low + 1] <= speed {
+            low += 1;
+        }
         let (a, b) = (self.speeds[low], self.speeds[low + 1]);
         (low, ((speed - a) / (b - a)).clamp(0.0, 1.0))
     }
@@ -115,15 +118,14 @@ impl GaitTable {
         let index = |cycle: usize, phase: usize| cycle * self.phases + phase;
         let of = [index(low, first), index(low, next), index(low + 1, first), index(low + 1, next)];
         let weights = [(1.0 - fast) * (1.0 - late), (1.0 - fast) * late, fast * (1.0 - late), fast * late];
-        let rows = of.map(|pose| &self.rotations[pose * JOINT_COUNT..(pose + 1) * JOINT_COUNT]);
+        let row = |i: usize| &self.rotations[of[i] * JOINT_COUNT..(of[i] + 1) * JOINT_COUNT];
+        let (a, b, c, d) = (row(0), row(1), row(2), row(3));
         for (joint, out) in pose.iter_mut().enumerate() {
-            let sum = rows[0][joint] * weights[0]
-                + rows[1][joint] * weights[1]
-                + rows[2][joint] * weights[2]
-                + rows[3][joint] * weights[3];
+            let sum = a[joint] * weights[0] + b[joint] * weights[1] + c[joint] * weights[2] + d[joint] * weights[3];
             *out = sum.normalize();
         }
-        of.iter().zip(weights).map(|(&pose, weight)| self.hips[pose] * weight).sum()
+        let hips = |i: usize| self.hips[of[i]] * weights[i];
+        hips(0) + hips(1) + hips(2) + hips(3)
     }
 
     fn validate(&self) -> Result<()> {

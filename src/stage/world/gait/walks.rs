@@ -125,7 +125,7 @@ impl Ways {
             (gait.crossing_phases[crossing], gait.cycle_paces[cycle as usize])
         };
         let (phase, pace) = world.tables.gait.as_ref().map_or((0.0, 1.0), of);
-        let [kind, walker, crossing] = [kind, walker, crossing].map(|number| number as u32);
+        let (kind, walker, crossing) = (kind as u32, walker as u32, crossing as u32);
         let (slots, enter) = (i32::from(slots), i32::from(enter));
         Stay { kind, walker, crossing, first, slots, enter, origin: Vec2::ZERO, turn: world.turn(instance), phase, pace }
     }
@@ -231,13 +231,10 @@ impl World {
         };
         let (place, velocity) = weights(inside);
         let rows = &self.tables.rows;
-        let knots: [Vec2; 4] = std::array::from_fn(|r| {
-            let at = at + r * stride;
-            Vec2::new(f32::from(rows[at]), f32::from(rows[at + behind]))
-        });
-        let weighed = |w: [f32; 4]| {
-            (knots[0] * w[0] + knots[1] * w[1] + knots[2] * w[2] + knots[3] * w[3]) * self.info().metres_per_unit
-        };
+        let knot = |at: usize| Vec2::new(f32::from(rows[at]), f32::from(rows[at + behind]));
+        let knots = [knot(at), knot(at + stride), knot(at + 2 * stride), knot(at + 3 * stride)];
+        let unit = self.info().metres_per_unit;
+        let weighed = |w: [f32; 4]| (knots[0] * w[0] + knots[1] * w[1] + knots[2] * w[2] + knots[3] * w[3]) * unit;
         let velocity = weighed(velocity);
         let place = weighed(place) + velocity * (share - inside);
         let speed = velocity.length() * (slots as f32 / self.info().period_secs);
