@@ -118,7 +118,7 @@ fn a_planted_foot_stays() {
                     continue;
                 }
                 jumps.push(a.0.distance(b.0) * 60.0);
-                let low = b.0.distance(a.0) * 60.0 < 0.15 && b.1 < 0.05;
+                let low = b.0.distance(a.0) * 60.0 < 0.06 && b.1 < 0.05;
                 stance = match (low, stance) {
                     (true, Some((from, slip))) => Some((from, slip.max(b.0.distance(from)))),
                     (true, None) => Some((b.0, 0.0)),
@@ -138,7 +138,7 @@ fn a_planted_foot_stays() {
         let found = [0.5, 0.9, 0.99, 0.999, 1.0].map(|share| at(list, share));
         println!("{name}: {found:.4?} of {}", list.len());
     }
-    // A stance begins and ends at 0.15 m/s here, which is what is left of sliding.
+    // A stance begins and ends at 0.06 m/s here, which is what is left of sliding.
     assert!(slips.len() > 1_000 && at(&mut slips, 0.5) < 3e-3 && at(&mut slips, 0.99) < 0.01);
     assert!(at(&mut jumps, 1.0) < 10.0, "{} m/s", at(&mut jumps, 1.0));
     assert!(at(&mut misses, 0.999) < 1e-3, "feet fall short of their places by {} m", at(&mut misses, 0.999));
@@ -177,8 +177,7 @@ fn the_check_looks_at_feet() {
         }
     };
     let cases = [
-        (failing(&|g| each(g, &|_, s| s.share = 0.1 * s.share.sqrt() + 0.9 * s.share)), ""),
-        (failing(&|g| each(g, &|at, s| s.share += 0.05 * (at * std::f32::consts::TAU).sin())), "planted foot slides"),
+        (failing(&|g| each(g, &|at, s| s.share += 0.006 * (at * std::f32::consts::TAU).sin())), "planted foot slides"),
         (failing(&|g| each(g, &|at, s| s.share = at)), "walking without a planted foot"),
         (failing(&|g| each(g, &|_, s| s.height -= 0.05)), "foot below the floor"),
         (failing(&|g| g.crossing_phases.iter_mut().step_by(7).for_each(|p| *p = (*p + 0.1) % 1.0)), "hands over"),

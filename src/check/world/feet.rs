@@ -18,7 +18,7 @@ const RATE: f64 = 60.0;
 /// Patches that are looked at; the first of the world.
 const PATCHES: usize = 128;
 /// A planted foot's ball is slower than this, m/s, and lower than this, metres.
-const PLANTED: (f32, f32) = (0.15, 0.05);
+const PLANTED: (f32, f32) = (0.06, 0.05);
 /// Who is slower than this, m/s, takes steps too small to tell from sliding.
 const WALKS: f32 = 0.4;
 /// Of those who walk, at most so many may have no foot planted (who runs has none for a moment).
@@ -96,13 +96,7 @@ fn everybody(world: &World, table: &GaitTable, time: f64) -> People {
 }
 
 impl Found {
-    fn frame(
-        &mut self,
-        time: f64,
-        last: &People,
-        now: &People,
-        stances: &mut BTreeMap<Person, [Stance; 2]>,
-    ) {
+    fn frame(&mut self, time: f64, last: &People, now: &People, stances: &mut BTreeMap<Person, [Stance; 2]>) {
         for (who, seen) in now {
             let place = || format!("person {} of cycle {} at {time:.2} s", who.number, who.cycle);
             self.sinking.offer(f64::from(-seen.lowest), place);
@@ -145,7 +139,7 @@ impl Found {
         let mut aloft = Worst::default();
         aloft.offer(self.aloft as f64 / self.walking.max(1) as f64, || format!("{} bodies", self.walking));
         vec![
-            self.worst.row(6, "planted foot slides", 0.02, "m"),
+            self.worst.row(6, "planted foot slides", 0.01, "m"),
             median.row(6, "planted foot slides, median", 0.003, "m"),
             aloft.row(6, "walking without a planted foot", ALOFT, ""),
             self.sinking.row(6, "foot below the floor", 0.01, "m"),

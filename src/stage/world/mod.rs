@@ -146,8 +146,7 @@ impl World {
     /// Where everybody who walks is at `moment`, patch by patch, metres from `origin`. O(people); allocates only where `out` has
     /// never been as large.
     pub fn roots(&self, moment: &Moment, origin: DVec2, out: &mut Roots) {
-        let all = 0..self.instances() as u32;
-        rows::sample(self, moment, all.map(|instance| Spot { instance, shift: DVec2::ZERO }), origin, out);
+        rows::sample_all(self, moment, origin, out);
     }
 
     /// The same for some patches only.

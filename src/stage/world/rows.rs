@@ -15,11 +15,18 @@ use crate::Result;
 /// Lanes sampled together.
 pub(super) const WIDTH: usize = 8;
 
+/// Patches per kind from which on its control points are weighed once for all of them.
+const SHARED: usize = 4;
+
 /// Places and velocities, one array for each coordinate. Reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub struct Roots {
     arrays: [Vec<f32>; 4],
     len: usize,
+    /// Lanes of every kind, weighed, for worlds whose kinds are shared: places and velocities in units of the kind's frame.
+    weighed: [Vec<f32>; 4],
+    /// Where each kind's are, and how many.
+    parts: Vec<[u32; 2]>,
 }
 
 impl Roots {
@@ -84,6 +91,8 @@ pub(super) struct Index {
     turns: Vec<[f32; 2]>,
     /// People who walk, of every slot.
     pub people: Vec<u32>,
+    /// Whether it pays to weigh each kind's control points once for all patches of the kind.
+    shared: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,7 +114,9 @@ impl Index {
         let runs = vec![Run::default(); slots * kinds];
         let turn = |t: &f32| [t.sin(), t.cos()].map(|part| part * tables.info.metres_per_unit);
         let turns = tables.instance_turns.iter().map(turn).collect();
-        let mut index = Self { runs, turns, strides: Vec::new(), pages: Vec::new(), people: Vec::new() };
+        let together = tables.instance_phases.iter().all(|&phase| phase == 0);
+        let shared = together && tables.instance_kinds.len() >= SHARED * kinds;
+        let mut index = Self { runs, turns, strides: Vec::new(), pages: Vec::new(), people: Vec::new(), shared };
         let stays: Vec<(i64, i64)> = (0..kinds).flat_map(|kind| stays(tables, kind)).collect();
         let mut begin = 0;
         for page in 0..tables.pages() {
@@ -207,6 +218,21 @@ impl Index {
         (both(&moment.place), both(&moment.velocity))
     }
 
+    /// Four rows of what is present in a slot of a kind, eight lanes at a time: their x, and their z.
+    #[inline(always)]
+    fn knots<'a>(
+        &self,
+        tables: &'a Tables,
+        slot: usize,
+        run: &Run,
+    ) -> ([&'a [[i16; WIDTH]]; 4], [&'a [[i16; WIDTH]]; 4]) {
+        let read = usize::from(run.live).next_multiple_of(WIDTH);
+        let (n, at) = (self.strides[slot], run.at as usize);
+        let eights = |at: usize| tables.rows[at..at + read].as_chunks::<WIDTH>().0;
+        let four = |at: usize| [eights(at), eights(at + n), eights(at + 2 * n), eights(at + 3 * n)];
+        (four(at), four(at + usize::from(run.lanes)))
+    }
+
     /// Where the control points of a lane are in a slot that it is present in: its x in the first of four rows, how far behind its z
     /// is, and from row to row.
     pub fn find(&self, tables: &Tables, kind: usize, slot: usize, lane: Lane) -> Option<[usize; 3]> {
@@ -255,6 +281,63 @@ pub(super) fn sample(
     pulp::Arch::new().dispatch(Sampling { world, moment, spots, origin, out });
 }
 
+/// Samples the walkers of all patches.
+pub(super) fn sample_all(world: &World, moment: &Moment, origin: DVec2, out: &mut Roots) {
+    if !world.rows.shared {
+        let all = 0..world.instances() as u32;
+        return sample(world, moment, all.map(|instance| Spot { instance, shift: DVec2::ZERO }), origin, out);
+    }
+    out.grow(world.walkers(moment) + WIDTH);
+    out.len = 0;
+    pulp::Arch::new().dispatch(SamplingKinds { world, moment, origin, out });
+}
+
+/// Weighs what is present of every kind, then turns and moves it for every patch.
+struct SamplingKinds<'a> {
+    world: &'a World,
+    moment: &'a Moment,
+    origin: DVec2,
+    out: &'a mut Roots,
+}
+
+impl pulp::NullaryFnOnce for SamplingKinds<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { world, moment, origin, out } = self;
+        let (tables, kinds) = (&world.tables, world.kinds());
+        let (place, velocity) = (moment.place, moment.velocity);
+        let slot = moment.slot as usize;
+        let runs = &world.rows.runs[slot * kinds..(slot + 1) * kinds];
+        let whole = runs.iter().map(|run| usize::from(run.live).next_multiple_of(WIDTH)).sum();
+        out.weighed.iter_mut().for_each(|list| list.resize(whole, 0.0));
+        out.parts.clear();
+        let mut begin = 0;
+        for run in runs {
+            let read = usize::from(run.live).next_multiple_of(WIDTH);
+            let (x, z) = world.rows.knots(tables, slot, run);
+            let [px, pz, vx, vz] = &mut out.weighed;
+            let into = [px, pz, vx, vz].map(|list| list[begin..begin + read].as_chunks_mut::<WIDTH>().0);
+            weigh_all(x, z, [&place, &velocity], into);
+            out.parts.push([begin as u32, u32::from(run.live)]);
+            begin += read;
+        }
+        for (instance, &kind) in tables.instance_kinds.iter().enumerate() {
+            let [begin, live] = out.parts[kind as usize].map(|number| number as usize);
+            let (first, read) = (out.len, live.next_multiple_of(WIDTH));
+            out.len += live;
+            let [sin, cos] = world.rows.turns[instance];
+            let place = (tables.place(instance) - origin).as_vec2();
+            let [px, pz, vx, vz] = &out.weighed;
+            let from = [px, pz, vx, vz].map(|list| list[begin..begin + read].as_chunks::<WIDTH>().0);
+            let [ox, oz, ovx, ovz] = &mut out.arrays;
+            let into = [ox, oz, ovx, ovz].map(|array| array[first..first + read].as_chunks_mut::<WIDTH>().0);
+            turn_all(from, (sin, cos, place.x, place.y), into);
+        }
+    }
+}
+
 struct Sampling<'a, I> {
     world: &'a World,
     moment: &'a Moment,
@@ -295,11 +378,7 @@ fn sample_patch(world: &World, slot: usize, weights: [&[f32; 4]; 2], spot: Spot,
     out.len += live;
     let [sin, cos] = world.rows.turns[instance];
     let place = (tables.place(instance) + spot.shift - origin).as_vec2();
-    let (n, at) = (world.rows.strides[slot], run.at as usize);
-    let eights = |at: usize| tables.rows[at..at + read].as_chunks::<WIDTH>().0;
-    let x: [_; 4] = [eights(at), eights(at + n), eights(at + 2 * n), eights(at + 3 * n)];
-    let at = at + usize::from(run.lanes);
-    let z: [_; 4] = [eights(at), eights(at + n), eights(at + 2 * n), eights(at + 3 * n)];
+    let (x, z) = world.rows.knots(tables, slot, &run);
     let [ox, oz, ovx, ovz] = &mut out.arrays;
     let out = [ox, oz, ovx, ovz].map(|array| array[first..first + read].as_chunks_mut::<WIDTH>().0);
     transform(x, z, weights, (sin, cos, place.x, place.y), out);
@@ -322,6 +401,41 @@ fn transform(
         let z = [lift(z0[b]), lift(z1[b]), lift(z2[b]), lift(z3[b])];
         let (px, pz) = (weigh(&x, place), weigh(&z, place));
         let (vx, vz) = (weigh(&x, velocity), weigh(&z, velocity));
+        ox[b] = std::array::from_fn(|i| cos * px[i] - sin * pz[i] + right);
+        oz[b] = std::array::from_fn(|i| sin * px[i] + cos * pz[i] + up);
+        ovx[b] = std::array::from_fn(|i| cos * vx[i] - sin * vz[i]);
+        ovz[b] = std::array::from_fn(|i| sin * vx[i] + cos * vz[i]);
+    }
+}
+
+/// Weighs the control points of blocks of eight lanes: places, then velocities.
+#[inline(always)]
+fn weigh_all(
+    x: [&[[i16; WIDTH]]; 4],
+    z: [&[[i16; WIDTH]]; 4],
+    [place, velocity]: [&[f32; 4]; 2],
+    [ox, oz, ovx, ovz]: [&mut [Eight]; 4],
+) {
+    for b in 0..ox.len() {
+        let x = [lift(x[0][b]), lift(x[1][b]), lift(x[2][b]), lift(x[3][b])];
+        let z = [lift(z[0][b]), lift(z[1][b]), lift(z[2][b]), lift(z[3][b])];
+        (ox[b], oz[b]) = (weigh(&x, place), weigh(&z, place));
+        (ovx[b], ovz[b]) = (weigh(&x, velocity), weigh(&z, velocity));
+    }
+}
+
+/// Turns and moves blocks of eight lanes that have been weighed. The same sums as in [`transform`].
+#[inline(always)]
+fn turn_all(
+    [px, pz, vx, vz]: [&[Eight]; 4],
+    (sin, cos, right, up): (f32, f32, f32, f32),
+    [ox, oz, ovx, ovz]: [&mut [Eight]; 4],
+) {
+    let n = ox.len();
+    let (px, pz, vx, vz) = (&px[..n], &pz[..n], &vx[..n], &vz[..n]);
+    let (oz, ovx, ovz) = (&mut oz[..n], &mut ovx[..n], &mut ovz[..n]);
+    for b in 0..n {
+        let (px, pz, vx, vz) = (px[b], pz[b], vx[b], vz[b]);
         ox[b] = std::array::from_fn(|i| cos * px[i] - sin * pz[i] + right);
         oz[b] = std::array::from_fn(|i| sin * px[i] + cos * pz[i] + up);
         ovx[b] = std::array::from_fn(|i| cos * vx[i] - sin * vz[i]);

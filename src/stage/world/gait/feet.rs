@@ -86,7 +86,8 @@ impl World {
                 let (place, ahead) = print(if swing.share <= 0.0 { -since } else { 1.0 - since });
                 return Foot { ball: Vec3::new(place.x, swing.height, place.y), ahead };
             }
-            let ((a, b), slow) = ((print(-since), print(1.0 - since)), if between.0 == 0 { 1.0 - between.1 } else { 0.0 });
+            let ((a, b), slow) =
+                ((print(-since), print(1.0 - since)), if between.0 == 0 { 1.0 - between.1 } else { 0.0 });
             let small = (a.0.distance(b.0) + 0.1 * a.1.distance(b.1)) * SMALL_STEP.0;
             let lift = small.min(SMALL_STEP.1) * slow * 4.0 * swing.share * (1.0 - swing.share);
             let place = a.0.lerp(b.0, swing.share);

@@ -39,7 +39,10 @@ struct Leg {
 /// Leads the legs of a `pose` (its hips turned in the world, at `root`) to the `feet`; returns by how much the hips come down.
 /// `turn` is where the body looks.
 pub(super) fn lead(pose: &mut [Quat; JOINT_COUNT], root: Vec3, turn: Quat, feet: &[Foot; 2]) -> f32 {
-    let mut legs = [Leg::new(pose, root, turn, joint::LEFT_UP_LEG, &feet[0]), Leg::new(pose, root, turn, joint::RIGHT_UP_LEG, &feet[1])];
+    let mut legs = [
+        Leg::new(pose, root, turn, joint::LEFT_UP_LEG, &feet[0]),
+        Leg::new(pose, root, turn, joint::RIGHT_UP_LEG, &feet[1]),
+    ];
     let lowering = eased(legs[0].lowering().max(legs[1].lowering())).min(LOWERING);
     for leg in &mut legs {
         leg.hip.y -= lowering;
@@ -138,12 +141,14 @@ impl Leg {
         let after = Triangle { area: (a2 * then - hip * hip).max(0.0).sqrt(), hip, ankle: 0.5 * (b2 + then - a2) };
         let hinge = (cross + self.turns[0] * Vec3::X * (STRAIGHT * a * b)).normalize_or(Vec3::X);
         let whole = now.sqrt() * reach;
-        let open = turned(hinge, [after.hip, after.area], [before.hip, before.area], a2 * whole);
-        let close = turned(hinge, [before.ankle, before.area], [after.ankle, after.area], b2 * whole);
-        let from = open * thigh + close * shin;
-        let arc = from.cross(way).extend((reach * far + from.dot(way)).max(1e-6));
-        let swing = Quat::from_vec4(arc).normalize();
-        [swing * open * self.turns[0], swing * close * self.turns[1]]
+        let open = Opening::new([after.hip, after.area], [before.hip, before.area], a2 * whole);
+        let close = Opening::new([before.ankle, before.area], [after.ankle, after.area], b2 * whole);
+        let from = open.turned(hinge, thigh) + close.turned(hinge, shin);
+        let swing = Quat::from_vec4(from.cross(way).extend((reach * far + from.dot(way)).max(1e-6)));
+        [
+            (swing * open.rotation(hinge) * self.turns[0]).normalize(),
+            (swing * close.rotation(hinge) * self.turns[1]).normalize(),
+        ]
     }
 
     #[inline]
@@ -168,11 +173,31 @@ struct Triangle {
     ankle: f32,
 }
 
-/// The turn about an `axis` from one angle to another, given as cosines and sines times lengths whose product is `whole`.
-#[inline]
-fn turned(axis: Vec3, [from, from_sine]: [f32; 2], [to, to_sine]: [f32; 2], whole: f32) -> Quat {
-    let (cosine, sine) = (from * to + from_sine * to_sine, to_sine * from - to * from_sine);
-    Quat::from_vec4((axis * sine).extend(whole + cosine)).normalize()
+/// How far a joint turns about its hinge: cosine and sine.
+struct Opening {
+    cosine: f32,
+    sine: f32,
+}
+
+impl Opening {
+    /// From one angle to another, given as cosines and sines times lengths whose product is `whole`.
+    #[inline]
+    fn new([from, from_sine]: [f32; 2], [to, to_sine]: [f32; 2], whole: f32) -> Self {
+        let scale = 1.0 / whole.max(1e-12);
+        Self { cosine: (from * to + from_sine * to_sine) * scale, sine: (to_sine * from - to * from_sine) * scale }
+    }
+
+    /// A direction at right angles to the hinge, turned.
+    #[inline]
+    fn turned(&self, hinge: Vec3, direction: Vec3) -> Vec3 {
+        direction * self.cosine + hinge.cross(direction) * self.sine
+    }
+
+    /// As a rotation; not as long as one.
+    #[inline]
+    fn rotation(&self, hinge: Vec3) -> Quat {
+        Quat::from_vec4((hinge * self.sine).extend(1.0 + self.cosine))
+    }
 }
 
 /// The turn about the vertical from where a body looks to where its foot looks.

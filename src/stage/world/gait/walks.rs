@@ -127,7 +127,18 @@ impl Ways {
         let (phase, pace) = world.tables.gait.as_ref().map_or((0.0, 1.0), of);
         let (kind, walker, crossing) = (kind as u32, walker as u32, crossing as u32);
         let (slots, enter) = (i32::from(slots), i32::from(enter));
-        Stay { kind, walker, crossing, first, slots, enter, origin: Vec2::ZERO, turn: world.turn(instance), phase, pace }
+        Stay {
+            kind,
+            walker,
+            crossing,
+            first,
+            slots,
+            enter,
+            origin: Vec2::ZERO,
+            turn: world.turn(instance),
+            phase,
+            pace,
+        }
     }
 
     /// The stay before (`side` 0) or after (1) a stay, seen from the same patch.
