@@ -66,7 +66,10 @@ describe("a world", () => {
     const poser = new Poser(world.gait);
     const n = world.gait.joints.length;
     const [places, turns] = [new Float32Array(4 * n), new Float32Array(4 * n)];
-    const expected = JSON.parse(readFileSync(new URL("feet.json", golden), "utf8")) as { time: number; joints: number[][] }[];
+    const expected = JSON.parse(readFileSync(new URL("feet.json", golden), "utf8")) as {
+      time: number;
+      joints: number[][];
+    }[];
     for (const { time, joints } of expected) {
       const people = everybody(time, world);
       expect(people.length).toBe(joints.length);

@@ -38,7 +38,8 @@ export class Feet {
     const first = Math.min(Math.floor(since * phases), phases - 1);
     const late = since * phases - first;
     const [low, fast] = between(speeds, speed);
-    const value = (cycle: number, pose: number, what: number) => swings[((cycle * phases + pose) * 2 + foot) * 2 + what];
+    const value = (cycle: number, pose: number, what: number) =>
+      swings[((cycle * phases + pose) * 2 + foot) * 2 + what];
     const of = (cycle: number, what: number) => {
       const from = value(cycle, first, what);
       const last = what === 0 ? 1 : value(cycle, 0, 1);

@@ -1,7 +1,22 @@
 /** Legs that reach their feet: the same as src/stage/world/gait/leg.rs. */
 
 import type { Bone, Foot } from "./model";
-import { about, conjugate, cross, dot, length, minus, normalized, plus, product, type Quat, scaled, turned, unit, type Vec } from "./quaternion";
+import {
+  about,
+  conjugate,
+  cross,
+  dot,
+  length,
+  minus,
+  normalized,
+  plus,
+  product,
+  type Quat,
+  scaled,
+  turned,
+  unit,
+  type Vec,
+} from "./quaternion";
 
 const STRETCH = 0.995;
 const LOWERING = 0.045;
@@ -73,8 +88,7 @@ function aside([sin, cos]: readonly [number, number], foot: Foot): Quat {
   return normalized([0, sine, 0, Math.max(Math.hypot(sine, cosine) + cosine, 1e-3)]);
 }
 
-const target = (joints: readonly Bone[], leg: Leg): Vec =>
-  minus(leg.ball, turned(leg.foot, joints[leg.up + 3].offset));
+const target = (joints: readonly Bone[], leg: Leg): Vec => minus(leg.ball, turned(leg.foot, joints[leg.up + 3].offset));
 
 const reachOf = (joints: readonly Bone[], leg: Leg): number =>
   Math.abs(joints[leg.up + 1].offset[1] + joints[leg.up + 2].offset[1]) * STRETCH;

@@ -2,8 +2,17 @@
 
 import { Container, count, FileProblem, finite, list, object, text } from "../crowd/container";
 import type { Vec3 } from "../crowd/model";
+import {
+  type Bone,
+  type Gait,
+  type Kind,
+  type Place,
+  type Stayer,
+  type Thing,
+  UNITS_PER_METRE,
+  type World,
+} from "./model";
 import { linked } from "./walks";
-import { type Bone, type Gait, type Kind, type Place, type Stayer, type Thing, UNITS_PER_METRE, type World } from "./model";
 
 export const MAGIC = "CQWORLD";
 const KIND = 5;

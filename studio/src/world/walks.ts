@@ -124,7 +124,9 @@ export class Walks {
     const rounds = side === 1 ? Number(then <= now) : -Number(then >= now);
     const cycle = identity.cycle[to];
     const copies = (axis: number) =>
-      identity.copies[2 * to + axis] - identity.copies[2 * stay.crossing + axis] + rounds * identity.around[2 * cycle + axis];
+      identity.copies[2 * to + axis] -
+      identity.copies[2 * stay.crossing + axis] +
+      rounds * identity.around[2 * cycle + axis];
     next.x = stay.x + place.x - stay.place.x + (repeat ? copies(0) * repeat[0] : 0);
     next.z = stay.z + place.z - stay.place.z + (repeat ? copies(1) * repeat[1] : 0);
     return next;
