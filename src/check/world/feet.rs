@@ -109,12 +109,12 @@ impl Found {
             let walks = seen.speed > WALKS;
             let own = stances.entry(*who).or_default();
             let mut planted = 0;
-            for foot in 0..2 {
+            for (foot, stance) in own.iter_mut().enumerate() {
                 let ball = |seen: &Seen| Vec2::new(seen.balls[foot].x, seen.balls[foot].z);
                 let (from, to) = (ball(before), ball(seen));
                 let stays = from.distance(to) * (RATE as f32) < PLANTED.0 && seen.balls[foot].y < PLANTED.1;
                 planted += usize::from(stays);
-                own[foot] = match own[foot] {
+                *stance = match *stance {
                     Some((begin, slide)) if stays && walks => Some((begin, slide.max(begin.distance(to)))),
                     None if stays && walks => Some((from, from.distance(to))),
                     Some((_, slide)) => {

@@ -7,14 +7,15 @@
 //! A *page* is a run of slots; within it, every kind's walkers are *lanes* in an order that makes those present in any
 //! slot neighbours: who leaves during the page first (the earliest first), then who stays, then who comes in. Rows of
 //! control points follow each other, so that one slot of all kinds is four contiguous rows, and sampling is four loads,
-//! a weighted sum and the instance's transform for eight lanes at a time (`rows.rs`). Kinds may be shared by any number of
+//! a weighted sum and the instance's transform for eight lanes at a time (`sample.rs`). Kinds may be shared by any number of
 //! instances, or be used once.
 //!
 //! | file | what |
 //! |---|---|
 //! | `moment.rs` | an instant: time slot and spline weights |
 //! | `tables.rs` | all numbers of a world, as in the file; what must be true of them |
-//! | `rows.rs` | pages, lanes, the sampling kernel |
+//! | `rows.rs` | pages, lanes |
+//! | `sample.rs` | the sampling kernel |
 //! | `kind.rs` | what a patch kind consists of: outline, patterns, objects, people, ways |
 //! | `gait/` | full bodies: poses by speed and phase, steps that go on over borders, feet that stay where they are planted |
 //! | `identity.rs` | who is who, at any time |
@@ -28,6 +29,7 @@ mod kind;
 mod moment;
 mod place;
 mod rows;
+mod sample;
 mod tables;
 
 use glam::{DVec2, Vec2};
@@ -39,8 +41,8 @@ pub use identity::{Identities, Link, Person};
 pub use kind::{Crossing, Kind, ObjectShape, Pattern, Stayer};
 pub use moment::Moment;
 pub use place::{Nearby, Spot, UNITS_PER_METRE};
-pub use rows::Roots;
 pub(crate) use rows::stay_slots;
+pub use sample::Roots;
 pub use tables::{Lane, Tables, TemplateInfo, WalkLimits, WorldInfo};
 
 use crate::Result;
@@ -146,12 +148,12 @@ impl World {
     /// Where everybody who walks is at `moment`, patch by patch, metres from `origin`. O(people); allocates only where `out` has
     /// never been as large.
     pub fn roots(&self, moment: &Moment, origin: DVec2, out: &mut Roots) {
-        rows::sample_all(self, moment, origin, out);
+        sample::sample_all(self, moment, origin, out);
     }
 
     /// The same for some patches only.
     pub fn roots_of(&self, moment: &Moment, spots: impl Iterator<Item = Spot>, origin: DVec2, out: &mut Roots) {
-        rows::sample(self, moment, spots, origin, out);
+        sample::sample(self, moment, spots, origin, out);
     }
 
     /// First slot of the stay of every walker of a kind, counted from the period it comes in, and the slot after the last: the patch

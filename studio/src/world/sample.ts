@@ -1,4 +1,4 @@
-/** Where everybody is at any time: the same sums as src/stage/world/rows.rs, for the patches that are near. */
+/** Where everybody is at any time: the same sums as src/stage/world/sample.rs, for the patches that are near. */
 
 import { Feet } from "./feet";
 import type { Foot, Place, World } from "./model";
