@@ -133,6 +133,11 @@ impl<'a> Reader<'a> {
         serde_json::from_value(self.header.clone()).map_err(|e| Error::invalid("container", "header", e.to_string()))
     }
 
+    /// Whether there is an array `name`.
+    pub fn has(&self, name: &str) -> bool {
+        self.arrays.contains_key(name)
+    }
+
     /// The array `name`, copied out.
     ///
     /// # Errors

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crowdquilt::check::world::check_world;
 use crowdquilt::stage::World;
-use crowdquilt::stage::world::{Person, Roots, Tables};
+use crowdquilt::stage::world::{Person, Roots, Spot, Tables};
 use crowdquilt::world::{Lattice, Plan, scenes};
 use glam::DVec2;
 
@@ -74,6 +74,22 @@ fn nobody_jumps_at_borders_and_periods() {
             count += 1;
         }
         assert!(count * 100 >= before.len() * 97, "{count} of {}", before.len());
+    }
+}
+
+#[test]
+fn all_patches_together_play_what_each_does() {
+    let (_, world) = baked(&Plan { versions: 1, patterns: 1, ..scenes::city(24, true, 1).unwrap() });
+    assert!(world.instances() >= 4 * world.kinds(), "{} kinds of {}", world.kinds(), world.instances());
+    let origin = DVec2::new(17.3, -250.0);
+    for time in [0.05, 4.4, 9.9999, -7.7] {
+        let (moment, mut all, mut each) = (world.moment(time), Roots::default(), Roots::default());
+        world.roots(&moment, origin, &mut all);
+        let spots = (0..world.instances() as u32).map(|instance| Spot { instance, shift: DVec2::ZERO });
+        world.roots_of(&moment, spots, origin, &mut each);
+        // To the bit.
+        assert!(all.len() > 500 && all.x() == each.x() && all.z() == each.z());
+        assert!(all.vx() == each.vx() && all.vz() == each.vz());
     }
 }
 

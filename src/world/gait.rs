@@ -12,6 +12,8 @@ use crate::stage::World;
 use crate::stage::world::{Gait, GaitTable, PER_RADIAN, STEPS_PER_CYCLE, mix};
 use crate::{Error, Result};
 
+use super::footprints::footprints;
+
 /// Poses of a cycle in the table.
 const PHASES: usize = 32;
 /// Speeds nearer to each other than this are one, m/s.
@@ -68,6 +70,7 @@ pub fn gait_table(set: &PatchSet) -> Result<GaitTable> {
             add(&mut table, &rotations, hips);
         }
     }
+    footprints(&mut table);
     Ok(table)
 }
 
@@ -216,7 +219,8 @@ fn join(world: &World, taken: &[Vec<f32>], gait: &mut Gait) {
         let kind = world.kind_of(instance);
         for ((enter, _), &steps) in world.stays(kind).into_iter().zip(&taken[kind]) {
             // Order on the cycle: when somebody who begins it in period 0 comes in.
-            let when = identities.laps(crossing) * i64::from(world.info().slots) + enter;
+            let ahead = i64::from(world.tables().instance_phases[instance]);
+            let when = identities.laps(crossing) * i64::from(world.info().slots) + enter - ahead;
             cycles.entry(identities.cycle(crossing)).or_default().push((when, crossing, steps));
             crossing += 1;
         }

@@ -41,6 +41,7 @@ mod assign;
 mod bake;
 mod band;
 mod day;
+mod footprints;
 mod frame;
 mod furnish;
 mod gait;

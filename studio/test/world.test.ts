@@ -15,8 +15,7 @@ const golden = JSON.parse(readFileSync(new URL("v1.world.json", FILES), "utf8"))
   joints: number[][];
 }[];
 
-function everybody(time: number): Walker[] {
-  const world = readWorld(bytes);
+function everybody(time: number, world = readWorld(bytes)): Walker[] {
   const sampler = new Sampler(world);
   const people: Walker[] = [];
   for (const place of world.places) sampler.patch(place, time, [0, 0], [0, 0], people);
@@ -55,6 +54,29 @@ describe("a world", () => {
           ),
         );
         expect(Math.min(...far)).toBeLessThan(0.01);
+      }
+    }
+  });
+
+  it("puts feet where the core does", () => {
+    const golden = new URL("golden/", import.meta.url);
+    const file = readFileSync(new URL("feet.world", golden));
+    const world = readWorld(file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer);
+    if (!world.gait?.prints) throw new Error("the golden world has footprints");
+    const poser = new Poser(world.gait);
+    const n = world.gait.joints.length;
+    const [places, turns] = [new Float32Array(4 * n), new Float32Array(4 * n)];
+    const expected = JSON.parse(readFileSync(new URL("feet.json", golden), "utf8")) as {
+      time: number;
+      joints: number[][];
+    }[];
+    for (const { time, joints } of expected) {
+      const people = everybody(time, world);
+      expect(people.length).toBe(joints.length);
+      for (const [i, walker] of people.entries()) {
+        poser.pose(walker, places, turns, 0);
+        const far = joints[i].map((v, k) => Math.abs(v - places[4 * Math.floor(k / 3) + (k % 3)]));
+        expect(Math.max(...far)).toBeLessThan(1e-3);
       }
     }
   });

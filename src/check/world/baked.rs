@@ -21,7 +21,7 @@ use crate::world::{Limits, Path, Shape};
 
 /// Checks a baked world: bodies never touch each other, objects, or who stays; walkers keep the limits of walking; everybody who
 /// leaves a patch comes into the next at the same place, as fast, as the same person; no two are one. Limits are widened by what
-/// 16 bits round. O(people x chords).
+/// 16 bits round. Feet of bodies stay where they are planted, above the floor. O(people x chords).
 pub fn check_world(world: &World) -> Report {
     let played = Played::new(world);
     let mut rows = Vec::new();
@@ -34,6 +34,7 @@ pub fn check_world(world: &World) -> Report {
     rows.push(row(2, "walkers enter objects and who stays", radius - objects.0, meters, "m", objects.1));
     rows.extend(played.limits());
     rows.extend(played.hand_overs());
+    rows.extend(super::feet::rows(world));
     Report { rows }
 }
 

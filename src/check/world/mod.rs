@@ -8,6 +8,7 @@
 mod baked;
 mod curve;
 mod distance;
+mod feet;
 mod patch;
 mod tiles;
 

@@ -6,9 +6,9 @@
 
 use std::path::Path;
 
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 
-use super::gait::{Gait, GaitTable};
+use super::gait::{Gait, GaitTable, Swing};
 use super::identity::{Identities, Place, Round};
 use super::{Tables, World, WorldInfo};
 use crate::container::{Reader, Writer, write_whole};
@@ -135,6 +135,11 @@ fn write_gait(gait: &Gait, writer: &mut Writer) {
     writer.array("gait_strides", &table.strides);
     writer.array("gait_rotations", &table.rotations.iter().flat_map(|q| q.to_array()).collect::<Vec<f32>>());
     writer.array("gait_hips", &table.hips.iter().flat_map(|p| p.to_array()).collect::<Vec<f32>>());
+    if !table.prints.is_empty() {
+        let swing = |s: &Swing| [s.share, s.height];
+        writer.array("gait_prints", &table.prints.iter().flatten().flat_map(|p| p.to_array()).collect::<Vec<f32>>());
+        writer.array("gait_swings", &table.swings.iter().flatten().flat_map(swing).collect::<Vec<f32>>());
+    }
     writer.array("gait_steps", &gait.steps);
     writer.array("gait_headings", &gait.headings);
     writer.array("crossing_phases", &gait.crossing_phases);
@@ -144,7 +149,15 @@ fn write_gait(gait: &Gait, writer: &mut Writer) {
 fn read_gait(phases: usize, reader: &Reader) -> Result<Gait> {
     let rotations: Vec<f32> = reader.array("gait_rotations")?;
     let hips: Vec<f32> = reader.array("gait_hips")?;
+    // Worlds made before feet were led to footprints have none.
+    let both = |name: &str| -> Result<Vec<Vec2>> {
+        let numbers: Vec<f32> = if reader.has(name) { reader.array(name)? } else { Vec::new() };
+        Ok(numbers.chunks_exact(2).map(Vec2::from_slice).collect())
+    };
+    let swing = |v: Vec2| Swing { share: v.x, height: v.y };
     let table = GaitTable {
+        prints: both("gait_prints")?.chunks_exact(2).map(|p| [p[0], p[1]]).collect(),
+        swings: both("gait_swings")?.chunks_exact(2).map(|s| [swing(s[0]), swing(s[1])]).collect(),
         speeds: reader.array("gait_speeds")?,
         strides: reader.array("gait_strides")?,
         phases,

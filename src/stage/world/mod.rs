@@ -7,16 +7,17 @@
 //! A *page* is a run of slots; within it, every kind's walkers are *lanes* in an order that makes those present in any
 //! slot neighbours: who leaves during the page first (the earliest first), then who stays, then who comes in. Rows of
 //! control points follow each other, so that one slot of all kinds is four contiguous rows, and sampling is four loads,
-//! a weighted sum and the instance's transform for eight lanes at a time (`rows.rs`). Kinds may be shared by any number of
+//! a weighted sum and the instance's transform for eight lanes at a time (`sample.rs`). Kinds may be shared by any number of
 //! instances, or be used once.
 //!
 //! | file | what |
 //! |---|---|
 //! | `moment.rs` | an instant: time slot and spline weights |
 //! | `tables.rs` | all numbers of a world, as in the file; what must be true of them |
-//! | `rows.rs` | pages, lanes, the sampling kernel |
+//! | `rows.rs` | pages, lanes |
+//! | `sample.rs` | the sampling kernel |
 //! | `kind.rs` | what a patch kind consists of: outline, patterns, objects, people, ways |
-//! | `gait.rs` | full bodies: poses by speed and phase, steps that go on over borders |
+//! | `gait/` | full bodies: poses by speed and phase, steps that go on over borders, feet that stay where they are planted |
 //! | `identity.rs` | who is who, at any time |
 //! | `place.rs` | where instances are, which are near |
 //! | `file.rs` | the world file |
@@ -28,25 +29,23 @@ mod kind;
 mod moment;
 mod place;
 mod rows;
+mod sample;
 mod tables;
 
 use glam::{DVec2, Vec2};
 
-pub use gait::{Gait, GaitTable, Walking};
+pub use gait::{Foot, Gait, GaitTable, Swing, Walking};
 pub(crate) use gait::{PER_RADIAN, STEPS_PER_CYCLE};
 pub(crate) use identity::mix;
 pub use identity::{Identities, Link, Person};
 pub use kind::{Crossing, Kind, ObjectShape, Pattern, Stayer};
 pub use moment::Moment;
 pub use place::{Nearby, Spot, UNITS_PER_METRE};
-pub use rows::Roots;
 pub(crate) use rows::stay_slots;
+pub use sample::Roots;
 pub use tables::{Lane, Tables, TemplateInfo, WalkLimits, WorldInfo};
 
 use crate::Result;
-
-/// First number of every walker in the gait's tables, and the slot it comes in.
-type Tracks = Vec<(u32, u16)>;
 
 /// A finished world: see the [module's documentation](self).
 #[derive(Clone, Debug, PartialEq)]
@@ -58,10 +57,8 @@ pub struct World {
     first_crossing: Vec<u32>,
     /// Number of stayers before every instance, and of all.
     first_stayer: Vec<u32>,
-    /// Number of walkers before every kind; for bodies.
-    first_walker: Vec<u32>,
-    /// First number in the gait's tables of every walker of every kind, and the slot it comes in; for bodies.
-    tracks: Tracks,
+    /// How people with bodies go from stay to stay.
+    ways: gait::Ways,
 }
 
 impl World {
@@ -84,8 +81,8 @@ impl World {
         };
         let first_crossing = ends(&|kind| tables.kind(kind).walkers());
         let first_stayer = ends(&|kind| tables.kind(kind).stayers().len());
-        let (first_walker, tracks) = gait_tracks(&tables)?;
-        Ok(Self { rows, nearby, first_crossing, first_stayer, first_walker, tracks, tables })
+        let ways = gait::Ways::new(&tables, &first_crossing)?;
+        Ok(Self { rows, nearby, first_crossing, first_stayer, ways, tables })
     }
 
     /// All its numbers.
@@ -151,13 +148,12 @@ impl World {
     /// Where everybody who walks is at `moment`, patch by patch, metres from `origin`. O(people); allocates only where `out` has
     /// never been as large.
     pub fn roots(&self, moment: &Moment, origin: DVec2, out: &mut Roots) {
-        let all = 0..self.instances() as u32;
-        rows::sample(self, moment, all.map(|instance| Spot { instance, shift: DVec2::ZERO }), origin, out);
+        sample::sample_all(self, moment, origin, out);
     }
 
     /// The same for some patches only.
     pub fn roots_of(&self, moment: &Moment, spots: impl Iterator<Item = Spot>, origin: DVec2, out: &mut Roots) {
-        rows::sample(self, moment, spots, origin, out);
+        sample::sample(self, moment, spots, origin, out);
     }
 
     /// First slot of the stay of every walker of a kind, counted from the period it comes in, and the slot after the last: the patch
@@ -204,23 +200,7 @@ impl World {
 
     /// Bytes it takes in memory.
     pub fn bytes(&self) -> usize {
-        let firsts = 4 * (self.first_crossing.len() + self.first_stayer.len() + self.first_walker.len());
-        self.tables.bytes() + self.rows.bytes() + self.nearby.bytes() + firsts + 8 * self.tracks.len()
+        let firsts = 4 * (self.first_crossing.len() + self.first_stayer.len());
+        self.tables.bytes() + self.rows.bytes() + self.nearby.bytes() + firsts + self.ways.bytes()
     }
-}
-
-/// Where the steps of every walker are, if there are any; and whether the gait fits.
-fn gait_tracks(tables: &Tables) -> Result<(Vec<u32>, Tracks)> {
-    let Some(gait) = &tables.gait else { return Ok((Vec::new(), Vec::new())) };
-    let (mut firsts, mut tracks, mut at) = (Vec::new(), Vec::new(), 0_u64);
-    for kind in 0..tables.kinds() {
-        firsts.push(tracks.len() as u32);
-        for (enter, leave) in rows::stays(tables, kind) {
-            tracks.push((at as u32, enter as u16));
-            at += (leave - enter).max(0) as u64 + 1;
-        }
-    }
-    let (crossings, cycles) = tables.identities.parts();
-    gait.validate(at, crossings.len(), cycles.len())?;
-    Ok((firsts, tracks))
 }

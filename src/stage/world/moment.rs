@@ -22,15 +22,9 @@ impl Moment {
         let whole = at.floor();
         let count = whole as i64;
         let (u, per_sec) = ((at - whole) as f32, (f64::from(slots) / period_secs) as f32);
-        let v = 1.0 - u;
-        let place = [v * v * v, (3.0 * u - 6.0) * u * u + 4.0, ((-3.0 * u + 3.0) * u + 3.0) * u + 1.0, u * u * u];
-        let velocity = [-0.5 * v * v, (1.5 * u - 2.0) * u, (-1.5 * u + 1.0) * u + 0.5, 0.5 * u * u];
-        Self {
-            lap: count.div_euclid(n),
-            slot: count.rem_euclid(n) as u32,
-            place: place.map(|w| w / 6.0),
-            velocity: velocity.map(|w| w * per_sec),
-        }
+        let (place, velocity) = weights(u);
+        let velocity = velocity.map(|w| w * per_sec);
+        Self { lap: count.div_euclid(n), slot: count.rem_euclid(n) as u32, place, velocity }
     }
 
     /// The instant `slots` slots later, of periods of `n` slots.
@@ -39,6 +33,15 @@ impl Moment {
         let slot = self.slot + slots;
         if slot < n { Self { slot, ..self } } else { Self { slot: slot - n, lap: self.lap + 1, ..self } }
     }
+}
+
+/// Weights of four control points for the place at a fraction `u` of a slot, and for the velocity per slot.
+#[inline(always)]
+pub(super) fn weights(u: f32) -> ([f32; 4], [f32; 4]) {
+    let v = 1.0 - u;
+    let (b, c) = ((3.0 * u - 6.0) * u * u + 4.0, ((-3.0 * u + 3.0) * u + 3.0) * u + 1.0);
+    let velocity = [-0.5 * v * v, (1.5 * u - 2.0) * u, (-1.5 * u + 1.0) * u + 0.5, 0.5 * u * u];
+    ([v * v * v / 6.0, b / 6.0, c / 6.0, u * u * u / 6.0], velocity)
 }
 
 #[cfg(test)]

@@ -1,89 +1,44 @@
-//! Pages of control points, and the kernel that samples them.
+//! Pages of control points: where whose are.
 //!
 //! In a page, a kind's lanes are in such an order that those present in any of its slots are neighbours. So a slot of a kind is a
-//! run of lanes, without gaps, masks or indices. Lanes are sampled eight at a time; what is computed beyond a run's end
-//! is overwritten by the next. Without `unsafe`: slices of fixed length carry the compiler to vector instructions, `pulp` to
-//! the widest the machine has. (Products and sums are never fused, so that all machines give the same bits.)
+//! run of lanes, without gaps, masks or indices.
 
-use glam::{DVec2, Vec2};
+use glam::Vec2;
 
-use super::place::Spot;
 use super::tables::{Lane, expect};
-use super::{Moment, Tables, World};
+use super::{Moment, Tables};
 use crate::Result;
 
 /// Lanes sampled together.
 pub(super) const WIDTH: usize = 8;
 
-/// Places and velocities, one array for each coordinate. Reused from frame to frame.
-#[derive(Clone, Debug, Default)]
-pub struct Roots {
-    arrays: [Vec<f32>; 4],
-    len: usize,
-}
-
-impl Roots {
-    /// How many people.
-    pub fn len(&self) -> usize {
-        self.len
-    }
-
-    /// Whether there is nobody.
-    pub fn is_empty(&self) -> bool {
-        self.len == 0
-    }
-
-    /// Everybody's x, metres from the origin asked for.
-    pub fn x(&self) -> &[f32] {
-        &self.arrays[0][..self.len]
-    }
-
-    /// Everybody's z.
-    pub fn z(&self) -> &[f32] {
-        &self.arrays[1][..self.len]
-    }
-
-    /// Everybody's velocity along x, m/s.
-    pub fn vx(&self) -> &[f32] {
-        &self.arrays[2][..self.len]
-    }
-
-    /// Everybody's velocity along z.
-    pub fn vz(&self) -> &[f32] {
-        &self.arrays[3][..self.len]
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn grow(&mut self, people: usize) {
-        if self.arrays[0].len() < people {
-            self.arrays.iter_mut().for_each(|array| array.resize(people, 0.0));
-        }
-    }
-}
+/// Patches per kind from which on its control points are weighed once for all of them.
+const SHARED: usize = 4;
 
 /// Where the lanes present in a slot of a kind are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Run {
+pub(super) struct Run {
     /// Their first x in the slot's first row: an index into `Tables::rows`.
     at: u32,
     /// Lanes of the kind in the page: how far behind x its z is.
     lanes: u16,
     /// How many are present.
-    live: u16,
+    pub live: u16,
 }
 
 /// What follows from the tables: runs of every slot and kind, and rows.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Index {
-    runs: Vec<Run>,
+    pub runs: Vec<Run>,
     /// From row to row, of every slot.
     strides: Vec<usize>,
     pages: Vec<Page>,
     /// Sine and cosine of every patch's turn, times the metres of a unit.
-    turns: Vec<[f32; 2]>,
+    pub turns: Vec<[f32; 2]>,
     /// People who walk, of every slot.
     pub people: Vec<u32>,
+    /// Whether it pays to weigh each kind's control points once for all patches of the kind.
+    pub shared: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,7 +60,9 @@ impl Index {
         let runs = vec![Run::default(); slots * kinds];
         let turn = |t: &f32| [t.sin(), t.cos()].map(|part| part * tables.info.metres_per_unit);
         let turns = tables.instance_turns.iter().map(turn).collect();
-        let mut index = Self { runs, turns, strides: Vec::new(), pages: Vec::new(), people: Vec::new() };
+        let together = tables.instance_phases.iter().all(|&phase| phase == 0);
+        let shared = together && tables.instance_kinds.len() >= SHARED * kinds;
+        let mut index = Self { runs, turns, strides: Vec::new(), pages: Vec::new(), people: Vec::new(), shared };
         let stays: Vec<(i64, i64)> = (0..kinds).flat_map(|kind| stays(tables, kind)).collect();
         let mut begin = 0;
         for page in 0..tables.pages() {
@@ -198,12 +155,40 @@ impl Index {
         let slot = moment.slot as usize;
         let run = self.runs[slot * tables.kinds() + kind];
         let at = run.at as usize + lane;
-        let weighed = |weights: &[f32; 4], at: usize| -> f32 {
-            let rows = weights.iter().enumerate().map(|(r, w)| w * f32::from(tables.rows[at + r * self.strides[slot]]));
-            rows.sum::<f32>() * tables.info.metres_per_unit
+        let (rows, n, unit) = (&tables.rows, self.strides[slot], tables.info.metres_per_unit);
+        let row = |at: usize| f32::from(rows[at]);
+        let weighed = |w: &[f32; 4], at: usize| -> f32 {
+            (w[0] * row(at) + w[1] * row(at + n) + w[2] * row(at + 2 * n) + w[3] * row(at + 3 * n)) * unit
         };
         let both = |weights| Vec2::new(weighed(weights, at), weighed(weights, at + usize::from(run.lanes)));
         (both(&moment.place), both(&moment.velocity))
+    }
+
+    /// Four rows of what is present in a slot of a kind, eight lanes at a time: their x, and their z.
+    #[inline(always)]
+    pub fn knots<'a>(
+        &self,
+        tables: &'a Tables,
+        slot: usize,
+        run: &Run,
+    ) -> ([&'a [[i16; WIDTH]]; 4], [&'a [[i16; WIDTH]]; 4]) {
+        let read = usize::from(run.live).next_multiple_of(WIDTH);
+        let (n, at) = (self.strides[slot], run.at as usize);
+        let eights = |at: usize| tables.rows[at..at + read].as_chunks::<WIDTH>().0;
+        let four = |at: usize| [eights(at), eights(at + n), eights(at + 2 * n), eights(at + 3 * n)];
+        (four(at), four(at + usize::from(run.lanes)))
+    }
+
+    /// Where the control points of a lane are in a slot that it is present in: its x in the first of four rows, how far behind its z
+    /// is, and from row to row.
+    pub fn find(&self, tables: &Tables, kind: usize, slot: usize, lane: Lane) -> Option<[usize; 3]> {
+        let (page, step) = (slot / tables.info.page as usize, slot % tables.info.page as usize);
+        let index = page * tables.kinds() + kind;
+        let first = if index == 0 { 0 } else { tables.lane_ends[index - 1] as usize };
+        let lanes = &tables.lanes[first..tables.lane_ends[index] as usize];
+        let number = lanes.iter().position(|&other| other == lane.0)?;
+        let Page { begin, row, lane: base } = self.pages[page];
+        Some([begin + step * row + 2 * (first - base) + number, lanes.len(), row])
     }
 
     pub fn bytes(&self) -> usize {
@@ -227,101 +212,4 @@ pub(crate) fn stay_slots((enter, leave): (f64, f64), slots_per_sec: f64) -> (i64
 /// How many people are present in `slot` of whom one comes in every period.
 fn laps(enter: i64, leave: i64, slot: i64, slots: i64) -> i64 {
     (leave - 1 - slot).div_euclid(slots) - (enter - 1 - slot).div_euclid(slots)
-}
-
-/// Samples the walkers of `spots`.
-pub(super) fn sample(
-    world: &World,
-    moment: &Moment,
-    spots: impl Iterator<Item = Spot>,
-    origin: DVec2,
-    out: &mut Roots,
-) {
-    out.grow(world.walkers(moment) + WIDTH);
-    out.len = 0;
-    pulp::Arch::new().dispatch(Sampling { world, moment, spots, origin, out });
-}
-
-struct Sampling<'a, I> {
-    world: &'a World,
-    moment: &'a Moment,
-    spots: I,
-    origin: DVec2,
-    out: &'a mut Roots,
-}
-
-impl<I: Iterator<Item = Spot>> pulp::NullaryFnOnce for Sampling<'_, I> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self { world, moment, spots, origin, out } = self;
-        let slots = world.info().slots;
-        // Copies, so that nothing written can be taken for them.
-        let (place, velocity) = (moment.place, moment.velocity);
-        for spot in spots {
-            let slot = moment.slot + world.tables.instance_phases[spot.instance as usize];
-            let slot = if slot < slots { slot } else { slot - slots };
-            sample_patch(world, slot as usize, [&place, &velocity], spot, origin, out);
-        }
-    }
-}
-
-type Eight = [f32; WIDTH];
-
-#[inline(always)]
-fn sample_patch(world: &World, slot: usize, weights: [&[f32; 4]; 2], spot: Spot, origin: DVec2, out: &mut Roots) {
-    let (tables, instance) = (&world.tables, spot.instance as usize);
-    let run = world.rows.runs[slot * tables.kinds() + tables.instance_kinds[instance] as usize];
-    let (live, first) = (usize::from(run.live), out.len);
-    let read = live.next_multiple_of(WIDTH);
-    if out.arrays[0].len() < first + read {
-        // The same patch more than once, where a world repeats.
-        out.grow((first + read) * 2);
-    }
-    out.len += live;
-    let [sin, cos] = world.rows.turns[instance];
-    let place = (tables.place(instance) + spot.shift - origin).as_vec2();
-    let (n, at) = (world.rows.strides[slot], run.at as usize);
-    let eights = |at: usize| tables.rows[at..at + read].as_chunks::<WIDTH>().0;
-    let x: [_; 4] = [eights(at), eights(at + n), eights(at + 2 * n), eights(at + 3 * n)];
-    let at = at + usize::from(run.lanes);
-    let z: [_; 4] = [eights(at), eights(at + n), eights(at + 2 * n), eights(at + 3 * n)];
-    let [ox, oz, ovx, ovz] = &mut out.arrays;
-    let out = [ox, oz, ovx, ovz].map(|array| array[first..first + read].as_chunks_mut::<WIDTH>().0);
-    transform(x, z, weights, (sin, cos, place.x, place.y), out);
-}
-
-/// Weighs the control points of blocks of eight lanes, turns and moves them: places, then velocities.
-#[inline(always)]
-fn transform(
-    x: [&[[i16; WIDTH]]; 4],
-    z: [&[[i16; WIDTH]]; 4],
-    [place, velocity]: [&[f32; 4]; 2],
-    (sin, cos, right, up): (f32, f32, f32, f32),
-    [ox, oz, ovx, ovz]: [&mut [Eight]; 4],
-) {
-    let n = ox.len();
-    let ([x0, x1, x2, x3], [z0, z1, z2, z3]) = (x.map(|s| &s[..n]), z.map(|s| &s[..n]));
-    let (oz, ovx, ovz) = (&mut oz[..n], &mut ovx[..n], &mut ovz[..n]);
-    for b in 0..n {
-        let x = [lift(x0[b]), lift(x1[b]), lift(x2[b]), lift(x3[b])];
-        let z = [lift(z0[b]), lift(z1[b]), lift(z2[b]), lift(z3[b])];
-        let (px, pz) = (weigh(&x, place), weigh(&z, place));
-        let (vx, vz) = (weigh(&x, velocity), weigh(&z, velocity));
-        ox[b] = std::array::from_fn(|i| cos * px[i] - sin * pz[i] + right);
-        oz[b] = std::array::from_fn(|i| sin * px[i] + cos * pz[i] + up);
-        ovx[b] = std::array::from_fn(|i| cos * vx[i] - sin * vz[i]);
-        ovz[b] = std::array::from_fn(|i| sin * vx[i] + cos * vz[i]);
-    }
-}
-
-#[inline(always)]
-fn lift(numbers: [i16; WIDTH]) -> Eight {
-    numbers.map(f32::from)
-}
-
-#[inline(always)]
-fn weigh(rows: &[Eight; 4], w: &[f32; 4]) -> Eight {
-    std::array::from_fn(|i| rows[0][i] * w[0] + rows[1][i] * w[1] + rows[2][i] * w[2] + rows[3][i] * w[3])
 }

@@ -55,6 +55,10 @@ export class Container {
   }
 
   /** The array `name`, which must be of that type and lie inside the data. */
+  has(name: string): boolean {
+    return object(this.header.arrays, "header.arrays")[name] !== undefined;
+  }
+
   array<T extends ElementName>(name: string, type: T): ArrayOf<T> {
     const place = `array ${name}`;
     const table = object(this.header.arrays, "header.arrays");

@@ -1,12 +1,17 @@
 /** A baked world of crowd patches, as its file holds it. See docs/formats/world.md. */
 
-import type { Joint } from "../crowd/model";
+import type { Joint, Vec3 } from "../crowd/model";
 
 export const UNITS_PER_METRE = 1024;
 
+/** A joint, and where its bone ends if no other joint does. */
+export interface Bone extends Joint {
+  tip: Vec3 | null;
+}
+
 /** Walking poses by speed and phase, and everybody's steps. */
 export interface Gait {
-  joints: Joint[];
+  joints: Bone[];
   phases: number;
   speeds: Float32Array;
   strides: Float32Array;
@@ -17,6 +22,12 @@ export interface Gait {
   headings: Int16Array;
   crossingPhases: Float32Array;
   paces: Float32Array;
+  /** Left and ahead of where somebody is, of both feet in the middle of their stances, of every cycle; null in old files. */
+  prints: Float32Array | null;
+  /** Share of the way between footprints and height of the ball, of both feet in every pose of every cycle. */
+  swings: Float32Array | null;
+  /** Crossings before and after every crossing; -1 for none. */
+  links: Int32Array;
   /** First number in steps of every walker of every kind. */
   tracks: Uint32Array;
 }
@@ -55,6 +66,17 @@ export interface Place {
   phase: number;
   /** Index of its first crossing. */
   firstCrossing: number;
+}
+
+/** Where a foot is. */
+export interface Foot {
+  /** Of its ball, relative to where its owner is. */
+  x: number;
+  y: number;
+  z: number;
+  /** Where it looks: sine and cosine of its heading, about a unit long. */
+  sin: number;
+  cos: number;
 }
 
 export interface World {

@@ -1,6 +1,8 @@
 /** Full bodies out of the gait table: joints' places and rotations, blended by speed and phase as in gait.rs. */
 
+import { lead } from "./leg";
 import type { Gait } from "./model";
+import { added, times, turned } from "./quaternion";
 import type { Walker } from "./sample";
 
 export class Poser {
@@ -18,6 +20,10 @@ export class Poser {
     const half = walker.heading / 2;
     const [sin, cos] = [Math.sin(walker.heading), Math.cos(walker.heading)];
     const heading = [0, Math.sin(half), 0, Math.cos(half)];
+    if (walker.feet) {
+      const root = [cos * hips[0] + sin * hips[2], hips[1], cos * hips[2] - sin * hips[0]] as const;
+      hips[1] -= lead(this.gait.joints, this.local, root, heading, [sin, cos], walker.feet);
+    }
     for (let j = 0; j < this.count; j++) {
       const { parent, offset } = this.gait.joints[j];
       const own = this.local.subarray(4 * j, 4 * j + 4);
@@ -56,28 +62,4 @@ export class Poser {
     const place = (axis: number) => weights.reduce((sum, w, k) => sum + w * hips[of[k] * 3 + axis], 0);
     return [place(0), place(1), place(2)];
   }
-}
-
-type Numbers = ArrayLike<number>;
-
-function times(a: Numbers, b: Numbers, out: Float32Array, at: number): void {
-  out[at] = a[3] * b[0] + b[3] * a[0] + a[1] * b[2] - a[2] * b[1];
-  out[at + 1] = a[3] * b[1] + b[3] * a[1] + a[2] * b[0] - a[0] * b[2];
-  out[at + 2] = a[3] * b[2] + b[3] * a[2] + a[0] * b[1] - a[1] * b[0];
-  out[at + 3] = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2];
-}
-
-function turned(q: Numbers, v: Numbers): [number, number, number] {
-  const x = 2 * (q[1] * v[2] - q[2] * v[1]);
-  const y = 2 * (q[2] * v[0] - q[0] * v[2]);
-  const z = 2 * (q[0] * v[1] - q[1] * v[0]);
-  return [
-    v[0] + q[3] * x + q[1] * z - q[2] * y,
-    v[1] + q[3] * y + q[2] * x - q[0] * z,
-    v[2] + q[3] * z + q[0] * y - q[1] * x,
-  ];
-}
-
-function added(a: Float32Array, at: number, b: Numbers): [number, number, number] {
-  return [a[at] + b[0], a[at + 1] + b[1], a[at + 2] + b[2]];
 }

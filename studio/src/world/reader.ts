@@ -1,8 +1,18 @@
 /** Reads world files (`*.world`). */
 
 import { Container, count, FileProblem, finite, list, object, text } from "../crowd/container";
-import type { Joint, Vec3 } from "../crowd/model";
-import { type Gait, type Kind, type Place, type Stayer, type Thing, UNITS_PER_METRE, type World } from "./model";
+import type { Vec3 } from "../crowd/model";
+import {
+  type Bone,
+  type Gait,
+  type Kind,
+  type Place,
+  type Stayer,
+  type Thing,
+  UNITS_PER_METRE,
+  type World,
+} from "./model";
+import { linked } from "./walks";
 
 export const MAGIC = "CQWORLD";
 const KIND = 5;
@@ -45,6 +55,7 @@ export function readWorld(bytes: ArrayBuffer): World {
     gait: header.gait_phases === null || header.gait_phases === undefined ? null : readGait(file, stays, crossings),
   };
   check(world, crossings);
+  if (world.gait?.prints) world.gait.links = linked(world);
   return world;
 }
 
@@ -164,6 +175,9 @@ function readGait(file: Container, stays: Int32Array, crossings: number): Gait {
     headings: file.array("gait_headings", "i16"),
     crossingPhases: file.array("crossing_phases", "f32"),
     paces: file.array("cycle_paces", "f32"),
+    prints: file.has("gait_prints") ? file.array("gait_prints", "f32") : null,
+    swings: file.has("gait_swings") ? file.array("gait_swings", "f32") : null,
+    links: new Int32Array(),
     tracks,
   };
   const poses = gait.speeds.length * gait.phases;
@@ -173,6 +187,8 @@ function readGait(file: Container, stays: Int32Array, crossings: number): Gait {
     ["gait_rotations", gait.rotations.length, poses * joints.length * 4],
     ["gait_hips", gait.hips.length, poses * 3],
     ["crossing_phases", gait.crossingPhases.length, crossings],
+    ["gait_prints", gait.prints?.length ?? 0, gait.prints || gait.swings ? gait.speeds.length * 4 : 0],
+    ["gait_swings", gait.swings?.length ?? 0, gait.prints || gait.swings ? poses * 4 : 0],
   ];
   for (const [name, found, expected] of sizes) {
     if (found !== expected) throw new FileProblem(`array ${name}`, `expected ${expected} numbers, found ${found}`);
@@ -180,8 +196,10 @@ function readGait(file: Container, stays: Int32Array, crossings: number): Gait {
   return gait;
 }
 
-function joint(value: unknown, i: number): Joint {
+function joint(value: unknown, i: number): Bone {
   const j = object(value, `joint ${i}`);
-  const offset = list(j.offset, `joint ${i}`).map((v) => finite(v, `joint ${i}`)) as unknown as Vec3;
-  return { name: text(j.name, `joint ${i}`), parent: j.parent === null ? -1 : count(j.parent, `joint ${i}`), offset };
+  const vector = (v: unknown) => list(v, `joint ${i}`).map((n) => finite(n, `joint ${i}`)) as unknown as Vec3;
+  const parent = j.parent === null ? -1 : count(j.parent, `joint ${i}`);
+  const tip = j.tip === null || j.tip === undefined ? null : vector(j.tip);
+  return { name: text(j.name, `joint ${i}`), parent, offset: vector(j.offset), tip };
 }

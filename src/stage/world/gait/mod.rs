@@ -4,9 +4,27 @@
 //! periods: along a cycle of crossings the steps that people take add up to a whole number (everybody walks a trifle faster or
 //! slower for that), and each crossing stores the phase it begins with. So the phase at any time is a function of the time, like
 //! all else. Stride and cadence go together: strides are interpolated between the cycles of the table, cadence is speed
-//! by stride, so that a planted foot goes back as fast as the body goes on.
+//! by stride, so that a planted foot goes back about as fast as the body goes on.
+//!
+//! Feet are then led to footprints (`feet.rs`): each is a function of the moment at which its foot is planted in the middle of its
+//! stance, and the foot goes from one to the next by the phase alone. So a planted foot stays where it is, whatever the body does,
+//! and nothing has to be remembered for it.
+//!
+//! | file | what |
+//! |---|---|
+//! | `mod.rs` | the table of poses, the steps of a world |
+//! | `walks.rs` | ways of people over borders: where and how somebody is at a step before or after |
+//! | `feet.rs` | footprints, and the feet between them |
+//! | `leg.rs` | a pose whose legs reach the feet |
+
+mod feet;
+mod leg;
+mod walks;
 
 use glam::{Quat, Vec2, Vec3};
+
+pub use feet::{Foot, Swing};
+pub(super) use walks::Ways;
 
 use super::tables::expect;
 use super::{Spot, World};
@@ -31,6 +49,12 @@ pub struct GaitTable {
     pub rotations: Vec<Quat>,
     /// Hips of every pose, relative to where somebody is: x to the left, y up, z ahead.
     pub hips: Vec<Vec3>,
+    /// Where the balls of the left and of the right foot are in the middle of their stances, cycle by cycle, relative to where
+    /// somebody is: to the left, ahead. Empty if feet are not led to footprints.
+    pub prints: Vec<[Vec2; 2]>,
+    /// How the left and the right foot go from one footprint to the next, cycle by cycle, pose by pose; from the middle of each
+    /// foot's own stance on: the left one's is at phase 0, the right one's at a half.
+    pub swings: Vec<[Swing; 2]>,
 }
 
 /// A walker's body at some time.
@@ -44,6 +68,8 @@ pub struct Walking {
     pub heading: f32,
     /// How far through its cycle of two steps it is, 0 to 1.
     pub phase: f32,
+    /// Where its feet are; `None` if they are not led to footprints.
+    pub feet: Option<[Foot; 2]>,
 }
 
 /// What the tables say about bodies.
@@ -74,7 +100,10 @@ impl GaitTable {
     /// The cycle below a speed, and how far to the next.
     fn between(&self, speed: f32) -> (usize, f32) {
         let last = self.speeds.len() - 2;
-        let low = self.speeds[1..=last].iter().take_while(|&&s| s <= speed).count().min(last);
+        let mut low = 0;
+        while low < last && self.speeds[low + 1] <= speed {
+            low += 1;
+        }
         let (a, b) = (self.speeds[low], self.speeds[low + 1]);
         (low, ((speed - a) / (b - a)).clamp(0.0, 1.0))
     }
@@ -82,22 +111,21 @@ impl GaitTable {
     /// The pose at a speed and phase, and the hips relative to where somebody is. No allocation.
     pub fn pose(&self, speed: f32, phase: f32, pose: &mut [Quat; JOINT_COUNT]) -> Vec3 {
         let (low, fast) = self.between(speed);
-        let at = phase.rem_euclid(1.0) * self.phases as f32;
+        let at = phase.clamp(0.0, 1.0) * self.phases as f32;
         let first = (at as usize).min(self.phases - 1);
         let late = at - first as f32;
         let next = if first + 1 < self.phases { first + 1 } else { 0 };
         let index = |cycle: usize, phase: usize| cycle * self.phases + phase;
         let of = [index(low, first), index(low, next), index(low + 1, first), index(low + 1, next)];
         let weights = [(1.0 - fast) * (1.0 - late), (1.0 - fast) * late, fast * (1.0 - late), fast * late];
-        let rows = of.map(|pose| &self.rotations[pose * JOINT_COUNT..(pose + 1) * JOINT_COUNT]);
+        let row = |i: usize| &self.rotations[of[i] * JOINT_COUNT..(of[i] + 1) * JOINT_COUNT];
+        let (a, b, c, d) = (row(0), row(1), row(2), row(3));
         for (joint, out) in pose.iter_mut().enumerate() {
-            let sum = rows[0][joint] * weights[0]
-                + rows[1][joint] * weights[1]
-                + rows[2][joint] * weights[2]
-                + rows[3][joint] * weights[3];
+            let sum = a[joint] * weights[0] + b[joint] * weights[1] + c[joint] * weights[2] + d[joint] * weights[3];
             *out = sum.normalize();
         }
-        of.iter().zip(weights).map(|(&pose, weight)| self.hips[pose] * weight).sum()
+        let hips = |i: usize| self.hips[of[i]] * weights[i];
+        hips(0) + hips(1) + hips(2) + hips(3)
     }
 
     fn validate(&self) -> Result<()> {
@@ -115,7 +143,18 @@ impl GaitTable {
         let found = self.rotations.len();
         expect(found == poses * JOINT_COUNT, "gait_rotations", || format!("{found} rotations for {poses} poses"))?;
         let finite = self.hips.iter().all(|h| h.is_finite()) && self.rotations.iter().all(|q| q.is_finite());
-        expect(finite, "gait_rotations", || "a number that is none".into())
+        expect(finite, "gait_rotations", || "a number that is none".into())?;
+        if self.prints.is_empty() && self.swings.is_empty() {
+            return Ok(());
+        }
+        let (prints, swings) = (self.prints.len(), self.swings.len());
+        expect(prints == cycles, "gait_prints", || format!("{prints} pairs for {cycles} cycles"))?;
+        expect(swings == poses, "gait_swings", || format!("{swings} pairs for {poses} poses"))?;
+        expect(self.phases.is_multiple_of(2), "gait_phases", || format!("{} is odd", self.phases))?;
+        let near = self.prints.iter().flatten().all(|p| p.length() < 2.0);
+        expect(near, "gait_prints", || "a foot that is not at its leg".into())?;
+        let sane = |s: &Swing| (-0.5..=1.5).contains(&s.share) && (-0.5..2.0).contains(&s.height);
+        expect(self.swings.iter().flatten().all(sane), "gait_swings", || "a foot that is not between footprints".into())
     }
 }
 
@@ -125,7 +164,11 @@ impl Walking {
         let hips = table.pose(self.velocity.length(), self.phase, pose);
         let turn = Quat::from_rotation_y(self.heading);
         pose[0] = turn * pose[0];
-        turn * hips + Vec3::new(self.place.x, 0.0, self.place.y)
+        let mut root = turn * hips;
+        if let Some(feet) = &self.feet {
+            root.y -= leg::lead(pose, root, turn, feet);
+        }
+        root + Vec3::new(self.place.x, 0.0, self.place.y)
     }
 }
 
@@ -140,11 +183,13 @@ impl Gait {
         expect(phases == crossings, "crossing_phases", || format!("{phases} numbers instead of {crossings}"))?;
         expect(paces == cycles, "cycle_paces", || format!("{paces} numbers instead of {cycles}"))?;
         let finite = self.crossing_phases.iter().chain(&self.cycle_paces).all(|v| v.is_finite() && v.abs() < 1e3);
-        expect(finite, "crossing_phases", || "a number that is no phase".into())
+        expect(finite, "crossing_phases", || "a number that is no phase".into())?;
+        let slow = self.cycle_paces.iter().find(|&&pace| pace < 0.1);
+        expect(slow.is_none(), "cycle_paces", || format!("{slow:?}"))
     }
 
     pub(super) fn bytes(&self) -> usize {
-        let table = 16 * self.table.rotations.len() + 12 * self.table.hips.len() + 8 * self.table.speeds.len();
+        let table = 16 * self.table.rotations.len() + 28 * self.table.hips.len() + 24 * self.table.speeds.len();
         table + 2 * (self.steps.len() + self.headings.len()) + 4 * (self.crossing_phases.len() + self.cycle_paces.len())
     }
 }
@@ -159,30 +204,32 @@ impl World {
         let at = time / f64::from(self.info().period_secs) * f64::from(self.info().slots);
         let fraction = (at - at.floor()) as f32;
         let kind = self.kind_of(instance);
-        let turn = self.turn(instance);
+        let rotation = Vec2::from_angle(self.turn(instance));
         let lanes = self.rows.lanes(&self.tables, kind, own.slot);
         lanes.enumerate().filter_map(move |(index, lane)| {
             let gait = self.tables.gait.as_ref()?;
             let (place, velocity) = self.rows.lane(&self.tables, kind, index, &own);
-            let (first, enter) = self.tracks[self.first_walker[kind] as usize + lane.walker()];
-            let slot = i64::from(own.slot) + lane.lap() * i64::from(self.info().slots) - i64::from(enter);
-            let at = first as usize + slot as usize;
-            let steps = mixed(gait.steps[at], gait.steps[at + 1], fraction) / STEPS_PER_CYCLE;
-            let heading = f32::from(gait.headings[at])
-                + f32::from(gait.headings[at + 1].wrapping_sub(gait.headings[at])) * fraction;
-            let crossing = self.first_crossing[instance] as usize + lane.walker();
-            let pace = gait.cycle_paces[self.tables.identities.cycle(crossing) as usize];
-            let rotate = |v: Vec2| Vec2::from_angle(turn).rotate(v);
-            Some(Walking {
-                place: rotate(place),
-                velocity: rotate(velocity),
-                heading: heading / PER_RADIAN - turn,
-                phase: (gait.crossing_phases[crossing] + steps * pace).rem_euclid(1.0),
-            })
+            let stay = self.ways.stay(self, instance, lane.walker());
+            let slot = (i64::from(own.slot) + lane.lap() * i64::from(self.info().slots)) as i32 - stay.enter;
+            let heading = stay.heading(gait, slot, fraction);
+            let body = Walking {
+                place: rotation.rotate(place),
+                velocity: rotation.rotate(velocity),
+                heading,
+                phase: fraction_of(stay.phase(gait, slot, fraction)),
+                feet: None,
+            };
+            Some(Walking { feet: self.feet(gait, &stay, (slot, fraction), &body), ..body })
         })
     }
 }
 
+/// What a phase is beyond whole cycles. Phases are not below zero, so this needs no call of the system's mathematics.
+fn fraction_of(phase: f32) -> f32 {
+    phase - phase as i32 as f32
+}
+
+#[inline]
 fn mixed(a: i16, b: i16, share: f32) -> f32 {
     f32::from(a) + (f32::from(b) - f32::from(a)) * share
 }

@@ -1,0 +1,256 @@
+//! Ways of people over borders: a walk is the stays in one patch after the other, and steps are counted all along.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, Vec2};
+
+use super::super::moment::weights;
+use super::super::{Lane, Tables, UNITS_PER_METRE, World, rows};
+use super::{Gait, PER_RADIAN, STEPS_PER_CYCLE, mixed};
+use crate::Result;
+
+/// No stay before or after.
+const NONE: u32 = u32::MAX;
+/// Slots and borders that a search for a step crosses at most; a step is a few.
+const FAR: usize = 64;
+
+/// Where the numbers of a walker of a kind are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Track {
+    /// Its first number in the gait's tables.
+    first: u32,
+    /// The slot it comes in.
+    enter: u16,
+    /// Slots of its stay.
+    slots: u16,
+}
+
+/// How people with bodies go from stay to stay. Empty without bodies.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(in crate::stage::world) struct Ways {
+    /// Number of walkers before every kind.
+    first_walker: Vec<u32>,
+    tracks: Vec<Track>,
+    /// Crossings before and after every crossing; none if feet do not need them.
+    links: Vec<[u32; 2]>,
+}
+
+/// A stay of somebody, seen from a patch: its numbers, and where its patch is.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::stage::world) struct Stay {
+    kind: u32,
+    walker: u32,
+    crossing: u32,
+    first: u32,
+    slots: i32,
+    /// The slot it comes in.
+    pub enter: i32,
+    /// Origin of its patch, relative to that of the patch it is seen from.
+    origin: Vec2,
+    turn: f32,
+    /// Phase that it begins with.
+    phase: f32,
+    /// Factor of its steps.
+    pace: f32,
+}
+
+/// How somebody is at a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Instant {
+    pub place: Vec2,
+    pub speed: f32,
+    /// Where it looks: sine and cosine of the heading.
+    pub ahead: Vec2,
+}
+
+impl Ways {
+    /// # Errors
+    /// If the gait does not fit the world.
+    pub fn new(tables: &Tables, first_crossing: &[u32]) -> Result<Self> {
+        let Some(gait) = &tables.gait else { return Ok(Self::default()) };
+        let (mut ways, mut at) = (Self::default(), 0_u64);
+        for kind in 0..tables.kinds() {
+            ways.first_walker.push(ways.tracks.len() as u32);
+            for (enter, leave) in rows::stays(tables, kind) {
+                let slots = (leave - enter).max(0);
+                ways.tracks.push(Track { first: at as u32, enter: enter as u16, slots: slots.min(0xffff) as u16 });
+                at += slots as u64 + 1;
+            }
+        }
+        let (crossings, cycles) = tables.identities.parts();
+        gait.validate(at, crossings.len(), cycles.len())?;
+        if !gait.table.prints.is_empty() {
+            ways.link(tables, first_crossing);
+        }
+        Ok(ways)
+    }
+
+    /// Finds who goes where: stays follow each other without a gap.
+    fn link(&mut self, tables: &Tables, first_crossing: &[u32]) {
+        let (slots, identities) = (i64::from(tables.info.slots), &tables.identities);
+        let mut cycles: BTreeMap<u32, Vec<(i64, u32, i64)>> = BTreeMap::new();
+        for (instance, &kind) in tables.instance_kinds.iter().enumerate() {
+            let first = first_crossing[instance];
+            for crossing in first..first_crossing[instance + 1] {
+                let track = self.tracks[(self.first_walker[kind as usize] + crossing - first) as usize];
+                let own = identities.laps(crossing as usize) * slots + i64::from(track.enter);
+                let when = own - i64::from(tables.instance_phases[instance]);
+                let of = cycles.entry(identities.cycle(crossing as usize)).or_default();
+                of.extend((track.slots > 0).then_some((when, crossing, i64::from(track.slots))));
+            }
+        }
+        self.links = vec![[NONE; 2]; first_crossing.last().map_or(0, |&n| n as usize)];
+        for (cycle, mut stays) in cycles {
+            stays.sort_unstable();
+            let around = identities.around(cycle).0 * slots;
+            let again = stays.first().map(|&(when, crossing, slots)| (when + around, crossing, slots));
+            stays.extend(again.filter(|_| around > 0));
+            for pair in stays.windows(2) {
+                if pair[0].0 + pair[0].2 == pair[1].0 {
+                    self.links[pair[0].1 as usize][1] = pair[1].1;
+                    self.links[pair[1].1 as usize][0] = pair[0].1;
+                }
+            }
+        }
+    }
+
+    /// The stay of a walker of an instance, seen from there.
+    #[inline]
+    pub fn stay(&self, world: &World, instance: usize, walker: usize) -> Stay {
+        let kind = world.kind_of(instance);
+        let Track { first, enter, slots } = self.tracks[self.first_walker[kind] as usize + walker];
+        let crossing = world.first_crossing[instance] as usize + walker;
+        let of = |gait: &Gait| {
+            let cycle = world.tables.identities.cycle(crossing);
+            (gait.crossing_phases[crossing], gait.cycle_paces[cycle as usize])
+        };
+        let (phase, pace) = world.tables.gait.as_ref().map_or((0.0, 1.0), of);
+        let (kind, walker, crossing) = (kind as u32, walker as u32, crossing as u32);
+        let (slots, enter) = (i32::from(slots), i32::from(enter));
+        Stay {
+            kind,
+            walker,
+            crossing,
+            first,
+            slots,
+            enter,
+            origin: Vec2::ZERO,
+            turn: world.turn(instance),
+            phase,
+            pace,
+        }
+    }
+
+    /// The stay before (`side` 0) or after (1) a stay, seen from the same patch.
+    #[cold]
+    fn neighbour(&self, world: &World, stay: &Stay, side: usize) -> Option<Stay> {
+        let from = stay.crossing as usize;
+        let to = *self.links.get(from)?.get(side)?;
+        if to == NONE {
+            return None;
+        }
+        let instance_of = |crossing: u32| world.first_crossing.partition_point(|&first| first <= crossing) - 1;
+        let [here, there] = [instance_of(stay.crossing), instance_of(to)];
+        let next = self.stay(world, there, (to - world.first_crossing[there]) as usize);
+        let when = |crossing: u32, instance: usize, stay: &Stay| {
+            let own = world.tables.identities.laps(crossing as usize) * i64::from(world.info().slots);
+            own + i64::from(stay.enter) - i64::from(world.tables.instance_phases[instance])
+        };
+        // From the last crossing of a cycle it is once around to the first.
+        let (now, then) = (when(stay.crossing, here, stay), when(to, there, &next));
+        let rounds = if side == 1 { i32::from(then <= now) } else { -i32::from(then >= now) };
+        let shift = world.copies_on(from, to as usize, rounds);
+        let way = world.place(there) + shift - world.place(here);
+        Some(Stay { origin: stay.origin + way.as_vec2(), ..next })
+    }
+
+    pub fn bytes(&self) -> usize {
+        4 * self.first_walker.len() + 8 * (self.tracks.len() + self.links.len())
+    }
+}
+
+impl Stay {
+    #[inline]
+    /// Where it looks, radians, in slot number `slot` of the stay.
+    pub fn heading(&self, gait: &Gait, slot: i32, share: f32) -> f32 {
+        let at = (self.first as i32 + slot) as usize;
+        let (from, to) = (gait.headings[at], gait.headings[at + 1]);
+        (f32::from(from) + f32::from(to.wrapping_sub(from)) * share) / PER_RADIAN - self.turn
+    }
+
+    #[inline]
+    /// Its phase, counted on from that which it came in with.
+    pub fn phase(&self, gait: &Gait, slot: i32, share: f32) -> f32 {
+        self.phase + self.steps(gait, slot, share) / STEPS_PER_CYCLE * self.pace
+    }
+
+    #[inline]
+    fn steps(&self, gait: &Gait, slot: i32, share: f32) -> f32 {
+        let at = (self.first as i32 + slot) as usize;
+        mixed(gait.steps[at], gait.steps[at + 1], share)
+    }
+}
+
+impl World {
+    /// How far it is to the copy of the world that the way from crossing `from` to `to` leads to, `rounds` of their cycle on.
+    fn copies_on(&self, from: usize, to: usize, rounds: i32) -> DVec2 {
+        let Some(repeat) = self.info().repeat else { return DVec2::ZERO };
+        let identities = &self.tables.identities;
+        let (a, b) = (identities.copies(from), identities.copies(to));
+        let (_, around) = identities.around(identities.cycle(from));
+        let on = |axis: usize| (b[axis] - a[axis] + i64::from(rounds) * around[axis]) as f64 * f64::from(repeat[axis]);
+        DVec2::new(on(0), on(1)) / UNITS_PER_METRE
+    }
+
+    /// How whoever is in slot number `slot` of a `stay` is `cycles` of two steps later (earlier if negative).
+    pub(super) fn later(&self, gait: &Gait, stay: &Stay, (slot, share): (i32, f32), cycles: f32) -> Instant {
+        let target = stay.steps(gait, slot, share) + cycles * STEPS_PER_CYCLE / stay.pace;
+        let (mut stay, mut slot, mut target) = (*stay, slot, target);
+        for _ in 0..FAR {
+            let at = (stay.first as i32 + slot) as usize;
+            let side = usize::from(target > f32::from(gait.steps[at + 1]));
+            if side == 0 && target >= f32::from(gait.steps[at]) {
+                break;
+            }
+            let on = if side == 1 { slot + 1 } else { slot - 1 };
+            if (0..stay.slots).contains(&on) {
+                slot = on;
+                continue;
+            }
+            let Some(next) = self.ways.neighbour(self, &stay, side) else { break };
+            let whole = if side == 1 { stay } else { next };
+            let taken = f32::from(gait.steps[(whole.first as i32 + whole.slots) as usize]);
+            target += if side == 1 { -taken } else { taken };
+            slot = if side == 1 { 0 } else { next.slots - 1 };
+            stay = next;
+        }
+        let at = (stay.first as i32 + slot) as usize;
+        let (from, to) = (f32::from(gait.steps[at]), f32::from(gait.steps[at + 1]));
+        self.instant(gait, &stay, slot, (target - from) / (to - from).max(1.0))
+    }
+
+    #[inline]
+    /// How somebody is at a share of a slot of its stay; straight on, before and after what is known of it.
+    fn instant(&self, gait: &Gait, stay: &Stay, slot: i32, share: f32) -> Instant {
+        let (inside, slots) = (share.clamp(0.0, 1.0), self.info().slots);
+        let (own, heading) = ((stay.enter + slot) as u32, stay.heading(gait, slot, inside));
+        let lane = Lane(stay.walker | (own / slots) << 16);
+        let (sin, cos) = heading.sin_cos();
+        let ahead = Vec2::new(sin, cos);
+        let found = self.rows.find(&self.tables, stay.kind as usize, (own % slots) as usize, lane);
+        let Some([at, behind, stride]) = found else {
+            return Instant { place: stay.origin, speed: 0.0, ahead };
+        };
+        let (place, velocity) = weights(inside);
+        let rows = &self.tables.rows;
+        let knot = |at: usize| Vec2::new(f32::from(rows[at]), f32::from(rows[at + behind]));
+        let knots = [knot(at), knot(at + stride), knot(at + 2 * stride), knot(at + 3 * stride)];
+        let unit = self.info().metres_per_unit;
+        let weighed = |w: [f32; 4]| (knots[0] * w[0] + knots[1] * w[1] + knots[2] * w[2] + knots[3] * w[3]) * unit;
+        let velocity = weighed(velocity);
+        let place = weighed(place) + velocity * (share - inside);
+        let speed = velocity.length() * (slots as f32 / self.info().period_secs);
+        let place = if stay.turn == 0.0 { place } else { Vec2::from_angle(stay.turn).rotate(place) };
+        Instant { place: place + stay.origin, speed, ahead }
+    }
+}

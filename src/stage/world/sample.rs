@@ -1,0 +1,247 @@
+//! Where everybody is at an instant: the kernel that samples control points.
+//!
+//! Lanes are sampled eight at a time; what is computed beyond a run's end is overwritten by the next. Without `unsafe`: slices of
+//! fixed length carry the compiler to vector instructions, `pulp` to the widest the machine has. (Products and sums are never fused,
+//! so that all machines give the same bits.)
+
+use glam::DVec2;
+
+use super::place::Spot;
+use super::rows::WIDTH;
+use super::{Moment, World};
+
+/// Places and velocities, one array for each coordinate. Reused from frame to frame.
+#[derive(Clone, Debug, Default)]
+pub struct Roots {
+    arrays: [Vec<f32>; 4],
+    len: usize,
+    /// Lanes of every kind, weighed, for worlds whose kinds are shared: places and velocities in units of the kind's frame.
+    weighed: [Vec<f32>; 4],
+    /// Where each kind's are, and how many.
+    parts: Vec<[u32; 2]>,
+}
+
+impl Roots {
+    /// How many people.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there is nobody.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Everybody's x, metres from the origin asked for.
+    pub fn x(&self) -> &[f32] {
+        &self.arrays[0][..self.len]
+    }
+
+    /// Everybody's z.
+    pub fn z(&self) -> &[f32] {
+        &self.arrays[1][..self.len]
+    }
+
+    /// Everybody's velocity along x, m/s.
+    pub fn vx(&self) -> &[f32] {
+        &self.arrays[2][..self.len]
+    }
+
+    /// Everybody's velocity along z.
+    pub fn vz(&self) -> &[f32] {
+        &self.arrays[3][..self.len]
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn grow(&mut self, people: usize) {
+        if self.arrays[0].len() < people {
+            self.arrays.iter_mut().for_each(|array| array.resize(people, 0.0));
+        }
+    }
+}
+
+/// Samples the walkers of `spots`.
+pub(super) fn sample(
+    world: &World,
+    moment: &Moment,
+    spots: impl Iterator<Item = Spot>,
+    origin: DVec2,
+    out: &mut Roots,
+) {
+    out.grow(world.walkers(moment) + WIDTH);
+    out.len = 0;
+    pulp::Arch::new().dispatch(Sampling { world, moment, spots, origin, out });
+}
+
+/// Samples the walkers of all patches.
+pub(super) fn sample_all(world: &World, moment: &Moment, origin: DVec2, out: &mut Roots) {
+    if !world.rows.shared {
+        let all = 0..world.instances() as u32;
+        return sample(world, moment, all.map(|instance| Spot { instance, shift: DVec2::ZERO }), origin, out);
+    }
+    out.grow(world.walkers(moment) + WIDTH);
+    out.len = 0;
+    pulp::Arch::new().dispatch(SamplingKinds { world, moment, origin, out });
+}
+
+/// Weighs what is present of every kind, then turns and moves it for every patch.
+struct SamplingKinds<'a> {
+    world: &'a World,
+    moment: &'a Moment,
+    origin: DVec2,
+    out: &'a mut Roots,
+}
+
+impl pulp::NullaryFnOnce for SamplingKinds<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { world, moment, origin, out } = self;
+        let (tables, kinds) = (&world.tables, world.kinds());
+        let (place, velocity) = (moment.place, moment.velocity);
+        let slot = moment.slot as usize;
+        let runs = &world.rows.runs[slot * kinds..(slot + 1) * kinds];
+        let whole = runs.iter().map(|run| usize::from(run.live).next_multiple_of(WIDTH)).sum();
+        out.weighed.iter_mut().for_each(|list| list.resize(whole, 0.0));
+        out.parts.clear();
+        let mut begin = 0;
+        for run in runs {
+            let read = usize::from(run.live).next_multiple_of(WIDTH);
+            let (x, z) = world.rows.knots(tables, slot, run);
+            let [px, pz, vx, vz] = &mut out.weighed;
+            let into = [px, pz, vx, vz].map(|list| list[begin..begin + read].as_chunks_mut::<WIDTH>().0);
+            weigh_all(x, z, [&place, &velocity], into);
+            out.parts.push([begin as u32, u32::from(run.live)]);
+            begin += read;
+        }
+        for (instance, &kind) in tables.instance_kinds.iter().enumerate() {
+            let [begin, live] = out.parts[kind as usize].map(|number| number as usize);
+            let (first, read) = (out.len, live.next_multiple_of(WIDTH));
+            out.len += live;
+            let [sin, cos] = world.rows.turns[instance];
+            let place = (tables.place(instance) - origin).as_vec2();
+            let [px, pz, vx, vz] = &out.weighed;
+            let from = [px, pz, vx, vz].map(|list| list[begin..begin + read].as_chunks::<WIDTH>().0);
+            let [ox, oz, ovx, ovz] = &mut out.arrays;
+            let into = [ox, oz, ovx, ovz].map(|array| array[first..first + read].as_chunks_mut::<WIDTH>().0);
+            turn_all(from, (sin, cos, place.x, place.y), into);
+        }
+    }
+}
+
+struct Sampling<'a, I> {
+    world: &'a World,
+    moment: &'a Moment,
+    spots: I,
+    origin: DVec2,
+    out: &'a mut Roots,
+}
+
+impl<I: Iterator<Item = Spot>> pulp::NullaryFnOnce for Sampling<'_, I> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { world, moment, spots, origin, out } = self;
+        let slots = world.info().slots;
+        // Copies, so that nothing written can be taken for them.
+        let (place, velocity) = (moment.place, moment.velocity);
+        for spot in spots {
+            let slot = moment.slot + world.tables.instance_phases[spot.instance as usize];
+            let slot = if slot < slots { slot } else { slot - slots };
+            sample_patch(world, slot as usize, [&place, &velocity], spot, origin, out);
+        }
+    }
+}
+
+type Eight = [f32; WIDTH];
+
+#[inline(always)]
+fn sample_patch(world: &World, slot: usize, weights: [&[f32; 4]; 2], spot: Spot, origin: DVec2, out: &mut Roots) {
+    let (tables, instance) = (&world.tables, spot.instance as usize);
+    let run = world.rows.runs[slot * tables.kinds() + tables.instance_kinds[instance] as usize];
+    let (live, first) = (usize::from(run.live), out.len);
+    let read = live.next_multiple_of(WIDTH);
+    if out.arrays[0].len() < first + read {
+        // The same patch more than once, where a world repeats.
+        out.grow((first + read) * 2);
+    }
+    out.len += live;
+    let [sin, cos] = world.rows.turns[instance];
+    let place = (tables.place(instance) + spot.shift - origin).as_vec2();
+    let (x, z) = world.rows.knots(tables, slot, &run);
+    let [ox, oz, ovx, ovz] = &mut out.arrays;
+    let out = [ox, oz, ovx, ovz].map(|array| array[first..first + read].as_chunks_mut::<WIDTH>().0);
+    transform(x, z, weights, (sin, cos, place.x, place.y), out);
+}
+
+/// Weighs the control points of blocks of eight lanes, turns and moves them: places, then velocities.
+#[inline(always)]
+fn transform(
+    x: [&[[i16; WIDTH]]; 4],
+    z: [&[[i16; WIDTH]]; 4],
+    [place, velocity]: [&[f32; 4]; 2],
+    (sin, cos, right, up): (f32, f32, f32, f32),
+    [ox, oz, ovx, ovz]: [&mut [Eight]; 4],
+) {
+    let n = ox.len();
+    let ([x0, x1, x2, x3], [z0, z1, z2, z3]) = (x.map(|s| &s[..n]), z.map(|s| &s[..n]));
+    let (oz, ovx, ovz) = (&mut oz[..n], &mut ovx[..n], &mut ovz[..n]);
+    for b in 0..n {
+        let x = [lift(x0[b]), lift(x1[b]), lift(x2[b]), lift(x3[b])];
+        let z = [lift(z0[b]), lift(z1[b]), lift(z2[b]), lift(z3[b])];
+        let (px, pz) = (weigh(&x, place), weigh(&z, place));
+        let (vx, vz) = (weigh(&x, velocity), weigh(&z, velocity));
+        ox[b] = std::array::from_fn(|i| cos * px[i] - sin * pz[i] + right);
+        oz[b] = std::array::from_fn(|i| sin * px[i] + cos * pz[i] + up);
+        ovx[b] = std::array::from_fn(|i| cos * vx[i] - sin * vz[i]);
+        ovz[b] = std::array::from_fn(|i| sin * vx[i] + cos * vz[i]);
+    }
+}
+
+/// Weighs the control points of blocks of eight lanes: places, then velocities.
+#[inline(always)]
+fn weigh_all(
+    x: [&[[i16; WIDTH]]; 4],
+    z: [&[[i16; WIDTH]]; 4],
+    [place, velocity]: [&[f32; 4]; 2],
+    [ox, oz, ovx, ovz]: [&mut [Eight]; 4],
+) {
+    for b in 0..ox.len() {
+        let x = [lift(x[0][b]), lift(x[1][b]), lift(x[2][b]), lift(x[3][b])];
+        let z = [lift(z[0][b]), lift(z[1][b]), lift(z[2][b]), lift(z[3][b])];
+        (ox[b], oz[b]) = (weigh(&x, place), weigh(&z, place));
+        (ovx[b], ovz[b]) = (weigh(&x, velocity), weigh(&z, velocity));
+    }
+}
+
+/// Turns and moves blocks of eight lanes that have been weighed. The same sums as in [`transform`].
+#[inline(always)]
+fn turn_all(
+    [px, pz, vx, vz]: [&[Eight]; 4],
+    (sin, cos, right, up): (f32, f32, f32, f32),
+    [ox, oz, ovx, ovz]: [&mut [Eight]; 4],
+) {
+    let n = ox.len();
+    let (px, pz, vx, vz) = (&px[..n], &pz[..n], &vx[..n], &vz[..n]);
+    let (oz, ovx, ovz) = (&mut oz[..n], &mut ovx[..n], &mut ovz[..n]);
+    for b in 0..n {
+        let (px, pz, vx, vz) = (px[b], pz[b], vx[b], vz[b]);
+        ox[b] = std::array::from_fn(|i| cos * px[i] - sin * pz[i] + right);
+        oz[b] = std::array::from_fn(|i| sin * px[i] + cos * pz[i] + up);
+        ovx[b] = std::array::from_fn(|i| cos * vx[i] - sin * vz[i]);
+        ovz[b] = std::array::from_fn(|i| sin * vx[i] + cos * vz[i]);
+    }
+}
+
+#[inline(always)]
+fn lift(numbers: [i16; WIDTH]) -> Eight {
+    numbers.map(f32::from)
+}
+
+#[inline(always)]
+fn weigh(rows: &[Eight; 4], w: &[f32; 4]) -> Eight {
+    std::array::from_fn(|i| rows[0][i] * w[0] + rows[1][i] * w[1] + rows[2][i] * w[2] + rows[3][i] * w[3])
+}
