@@ -29,6 +29,7 @@
 //! | `area/` | worlds from walkable polygons: repaired, cut into convex cells |
 //! | `scene.rs` | scene files: templates, and a map in characters or a picture |
 //! | `gait.rs` | walking cycles out of captures, and steps for everybody |
+//! | `rich/` | what people do who do something else than walk, out of a patch set |
 //! | `stream.rs` | an endless world around a camera |
 //! | `scenes.rs`, `measure.rs` | the street and the city of the paper; how long patches take |
 
@@ -48,6 +49,7 @@ mod patch;
 mod path;
 mod pattern;
 mod plan;
+mod rich;
 mod route;
 mod scene;
 pub mod scenes;
@@ -71,6 +73,7 @@ pub use patch::{CrowdPatch, Port, Walker};
 pub use path::Path;
 pub use pattern::{Crossing, Pattern, balanced};
 pub use plan::Plan;
+pub use rich::{Member, Role, Tableau};
 pub use scene::{Layout, WorldScene};
 pub use shape::Shape;
 pub use solve::{Common, Method, Options, Solution, solve, vary};

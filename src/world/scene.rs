@@ -290,7 +290,13 @@ fn template(text: &Spanned<TemplateText>, all: &[Spanned<TemplateText>], bad: &m
         let p = people.get_ref();
         if let Some(amount) = amount(p.number, p.density, &p.name, people.span(), bad) {
             let size = (p.group[0], p.group[1]);
-            made.gatherings.push(Gathering { name: p.name.clone(), size, radius: p.radius, amount });
+            made.gatherings.push(Gathering {
+                name: p.name.clone(),
+                size,
+                radius: p.radius,
+                amount,
+                tableaux: Default::default(),
+            });
         }
     }
     for (name, border) in &raw.borders {

@@ -16,11 +16,13 @@
 //! | `tables.rs` | all numbers of a world, as in the file; what must be true of them |
 //! | `rows.rs` | pages, lanes, the sampling kernel |
 //! | `kind.rs` | what a patch kind consists of: outline, patterns, objects, people, ways |
+//! | `acts.rs` | full bodies of people who do something else than walk: clips |
 //! | `gait.rs` | full bodies: poses by speed and phase, steps that go on over borders |
 //! | `identity.rs` | who is who, at any time |
 //! | `place.rs` | where instances are, which are near |
 //! | `file.rs` | the world file |
 
+mod acts;
 mod file;
 mod gait;
 mod identity;
@@ -32,6 +34,8 @@ mod tables;
 
 use glam::{DVec2, Vec2};
 
+pub(crate) use acts::NO_ACT;
+pub use acts::{Act, Acts};
 pub use gait::{Gait, GaitTable, Walking};
 pub(crate) use gait::{PER_RADIAN, STEPS_PER_CYCLE};
 pub(crate) use identity::mix;
