@@ -34,6 +34,7 @@ pub fn check_world(world: &World) -> Report {
     rows.push(row(2, "walkers enter objects and who stays", radius - objects.0, meters, "m", objects.1));
     rows.extend(played.limits());
     rows.extend(played.hand_overs());
+    rows.extend(super::acts::rows(world));
     Report { rows }
 }
 

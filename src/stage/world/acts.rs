@@ -177,6 +177,8 @@ impl World {
         let stayer = self.kind(kind).stayers().nth(index)?;
         let slot = f64::from(self.info().period_secs) / f64::from(self.info().slots);
         let own = time + f64::from(self.tables.instance_phases[instance]) * slot;
+        // Rounds are whole parts of the period; folding by it first keeps roundings from adding up over hours.
+        let own = own.rem_euclid(f64::from(self.info().period_secs));
         let hips = self.tables.acts.as_ref()?.sample(act, own + lead, pose);
         let turn = self.turn(instance);
         let place = Vec2::from_angle(turn).rotate(stayer.place);

@@ -25,6 +25,8 @@ const NEAR: f32 = 0.75;
 /// Room that somebody alone has, and how much more each further person needs, metres.
 const ROOM: f32 = 0.75;
 const MORE_ROOM: f32 = 0.4;
+/// More people than these are not one group.
+const MOST: usize = 5;
 /// Tableaux that are wider are left out, metres.
 const WIDEST: f32 = 1.6;
 
@@ -43,6 +45,9 @@ pub(super) struct Wish<'a> {
 
 /// Up to `most` tableaux as wished, those with the most company first; none if the set has none.
 pub(super) fn play(set: &PatchSet, wish: Wish, most: usize) -> Vec<Tableau> {
+    if wish.people > MOST {
+        return Vec::new();
+    }
     let choices = [false, true].map(|turns| fitting(set, wish, turns));
     let of_seed = |seed: u64| choices.iter().find_map(|set| of_seed(set, wish, seed));
     let seeds: Vec<u64> = (0..SEEDS).map(|k| wish.seed.wrapping_mul(SEEDS).wrapping_add(k)).collect();

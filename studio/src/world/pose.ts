@@ -58,16 +58,16 @@ export class Poser {
   }
 }
 
-type Numbers = ArrayLike<number>;
+export type Numbers = ArrayLike<number>;
 
-function times(a: Numbers, b: Numbers, out: Float32Array, at: number): void {
+export function times(a: Numbers, b: Numbers, out: Float32Array, at: number): void {
   out[at] = a[3] * b[0] + b[3] * a[0] + a[1] * b[2] - a[2] * b[1];
   out[at + 1] = a[3] * b[1] + b[3] * a[1] + a[2] * b[0] - a[0] * b[2];
   out[at + 2] = a[3] * b[2] + b[3] * a[2] + a[0] * b[1] - a[1] * b[0];
   out[at + 3] = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2];
 }
 
-function turned(q: Numbers, v: Numbers): [number, number, number] {
+export function turned(q: Numbers, v: Numbers): [number, number, number] {
   const x = 2 * (q[1] * v[2] - q[2] * v[1]);
   const y = 2 * (q[2] * v[0] - q[0] * v[2]);
   const z = 2 * (q[0] * v[1] - q[1] * v[0]);
@@ -78,6 +78,6 @@ function turned(q: Numbers, v: Numbers): [number, number, number] {
   ];
 }
 
-function added(a: Float32Array, at: number, b: Numbers): [number, number, number] {
+export function added(a: Float32Array, at: number, b: Numbers): [number, number, number] {
   return [a[at] + b[0], a[at + 1] + b[1], a[at + 2] + b[2]];
 }

@@ -13,6 +13,8 @@ export interface Walker {
   phase: number;
   /** The same for the same person at any time. */
   id: number;
+  /** Who does something else than walk: which clip, at which second of it. */
+  act?: { clip: number; secs: number };
 }
 
 /** A time slot and the weights of control points in it. */

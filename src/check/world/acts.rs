@@ -1,0 +1,76 @@
+//! What people do who stay: their bodies stay in their discs, and clips go on where they begin again.
+
+use glam::{Quat, Vec2, Vec3};
+use rayon::prelude::*;
+
+use crate::check::report::{Row, Worst};
+use crate::motion::{JOINT_COUNT, body_capsules, canonical};
+use crate::stage::World;
+use crate::stage::world::Acts;
+
+/// What 16 bits may turn a joint by, radians, and move what hangs on it by, metres.
+const ROUNDED_TURN: f64 = 4e-4;
+const ROUNDED_PLACE: f64 = 1e-3;
+/// The hips may go so much farther where a clip begins again than anywhere else in it, metres.
+const SEAM: f64 = 1e-3;
+
+/// Rows of a world whose people do something; none if nobody does.
+pub(super) fn rows(world: &World) -> Vec<Row> {
+    let Some(acts) = &world.tables().acts else { return Vec::new() };
+    let stays = |kind: usize| (0..world.kind(kind).stayers().len()).map(move |index| (kind, index));
+    let all: Vec<(usize, usize)> = (0..world.kinds()).flat_map(stays).collect();
+    let outside: Vec<f64> = all.par_iter().map(|&(kind, index)| outside(world, acts, kind, index)).collect();
+    let [mut out, mut leap, mut turn, mut odd] = std::array::from_fn(|_| Worst::default());
+    for (&(kind, index), outside) in all.iter().zip(outside) {
+        let place = || format!("kind {kind}, person {index} of those who stay");
+        out.offer(outside, place);
+        if let Some((act, _)) = world.stayer_act(kind, index) {
+            let (leaps, turns) = seam(acts, act);
+            leap.offer(leaps, place);
+            turn.offer(turns, place);
+            let rounds = f64::from(world.info().period_secs) / acts.round_secs(act);
+            odd.offer((rounds - rounds.round()).abs() * acts.round_secs(act), place);
+        }
+    }
+    vec![
+        out.row(6, "bodies of who stays leave their discs", ROUNDED_PLACE, "m"),
+        leap.row(6, "hips leap where an act begins again", SEAM, "m"),
+        turn.row(6, "joints leap where an act begins again", ROUNDED_TURN.to_degrees(), "deg"),
+        odd.row(6, "acts do not end with the period", 1e-3, "s"),
+    ]
+}
+
+/// How far the body of somebody who stays leaves the disc.
+fn outside(world: &World, acts: &Acts, kind: usize, index: usize) -> f64 {
+    let stayer = world.kind(kind).stayers().nth(index);
+    let (Some(stayer), Some((act, _))) = (stayer, world.stayer_act(kind, index)) else { return 0.0 };
+    let (mut globals, mut capsules) = (Vec::new(), Vec::new());
+    for (root, pose) in frames(acts, act) {
+        canonical().globals(root, &pose, &mut globals);
+        body_capsules(&globals, &mut capsules);
+    }
+    let reach = |p: Vec3, radius: f32| Vec2::new(p.x, p.z).length() + radius;
+    let far = capsules.iter().map(|c| reach(c.a, c.radius).max(reach(c.b, c.radius))).fold(0.0, f32::max);
+    f64::from(far - stayer.radius).max(0.0)
+}
+
+/// Hips and rotations of a clip, read from the numbers themselves.
+fn frames(acts: &Acts, act: usize) -> impl Iterator<Item = (Vec3, Vec<Quat>)> {
+    acts.frames(act).map(|frame| {
+        let numbers = &acts.rotations[4 * JOINT_COUNT * frame..][..4 * JOINT_COUNT];
+        let turn = |q: &[i16]| Quat::from_array(std::array::from_fn(|i| f32::from(q[i]))).normalize();
+        (Vec3::from_slice(&acts.roots[3 * frame..]), numbers.chunks_exact(4).map(turn).collect())
+    })
+}
+
+/// By how much hips (metres) and joints (degrees) change more from the last frame to the first than anywhere else.
+fn seam(acts: &Acts, act: usize) -> (f64, f64) {
+    let all: Vec<(Vec3, Vec<Quat>)> = frames(acts, act).collect();
+    let change = |a: &(Vec3, Vec<Quat>), b: &(Vec3, Vec<Quat>)| {
+        let turns = a.1.iter().zip(&b.1).map(|(p, q)| p.angle_between(*q)).fold(0.0, f32::max);
+        (f64::from(a.0.distance(b.0)), f64::from(turns).to_degrees())
+    };
+    let within = all.windows(2).map(|w| change(&w[0], &w[1])).fold((0.0, 0.0), |m, c| (c.0.max(m.0), c.1.max(m.1)));
+    let over = change(&all[all.len() - 1], &all[0]);
+    ((over.0 - within.0).max(0.0), (over.1 - within.1).max(0.0))
+}
