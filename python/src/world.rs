@@ -342,15 +342,17 @@ impl World {
     fn joints(&self, secs: f64, (x, z, radius): (f64, f64, f64)) -> (Vec<u64>, Vec<f32>) {
         let world = &*self.0;
         let (mut ids, mut joints, mut globals) = (Vec::new(), Vec::new(), Vec::new());
-        let Some(gait) = &world.tables().gait else { return (ids, joints) };
+        if world.tables().gait.is_none() {
+            return (ids, joints);
+        }
         let (middle, moment) = (DVec2::new(x, z), world.moment(secs));
         let mut pose = [Quat::IDENTITY; JOINT_COUNT];
         for spot in world.nearby().within(middle, radius) {
             let instance = spot.instance as usize;
             let place = (world.place(instance) + spot.shift - middle).as_vec2();
             ids.extend(world.people_of(instance, self.copy(spot.shift), &moment).map(|person| person.hash(0)));
-            for body in world.bodies(spot, secs) {
-                let root = body.pose(&gait.table, &mut pose);
+            for (who, body) in world.walkers_of(instance, &moment).zip(world.bodies(spot, secs)) {
+                let root = world.walker_body(spot, who, &body, secs, &mut pose);
                 canonical().globals(root + Vec3::new(place.x, 0.0, place.y), &pose, &mut globals);
                 joints.extend(globals.iter().flat_map(|(position, _)| position.to_array()));
             }

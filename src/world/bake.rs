@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec2};
 
-use super::{CrowdPatch, Identities, Lattice, Limits, Pattern, Plan, Role, Shape, Standing, Template};
+use super::rich::moved;
+use super::{CrowdPatch, Identities, Lattice, Limits, Pattern, Plan, Role, Shape, Standing, Template, Walker};
 use crate::stage::World;
 use crate::stage::world::{
     Act, Lane, NO_ACT, Tables, TemplateInfo, UNITS_PER_METRE, WalkLimits, WorldInfo, stay_slots,
@@ -42,6 +43,7 @@ pub fn bake(
         bakery.add_kind(index, patch, *template)?;
     }
     bakery.add_pages(kinds);
+    bakery.end_acts();
     bakery.end_rows();
     bakery.add_instances(placements)?;
     World::new(bakery.tables)
@@ -139,6 +141,7 @@ impl Bakery {
                 return Err(Error::invalid("world", place(), "expected at most 65535 walkers"));
             }
             self.tables.walkers.push(output as u32 | walker.laps << 16);
+            self.add_visit(patch, walker, self.middles[index]);
         }
         for object in &frame.objects {
             self.add_object(&object.name, &object.shape, origin);
@@ -168,6 +171,22 @@ impl Bakery {
         t.object_points.extend(points.iter().flat_map(|&p| (p - origin).to_array()));
         t.object_ends.push((t.object_points.len() / 2) as u32);
         t.object_radii.push(radius);
+    }
+
+    /// What somebody does who comes in and goes out.
+    fn add_visit(&mut self, patch: &CrowdPatch, walker: &Walker, middle: DVec2) {
+        if walker.role.is_none() && self.tables.acts.is_none() {
+            return;
+        }
+        let everybody = self.tables.walkers.len();
+        let acts = self.tables.acts.get_or_insert_default();
+        acts.walkers.resize(everybody - 1, NO_ACT);
+        acts.walker_times.resize(3 * (everybody - 1), 0.0);
+        let act = walker.role.as_ref().map_or(NO_ACT, |role| acts.add(&moved(&role.act, -middle)));
+        let (enter, leave) = patch.presence(walker);
+        acts.walkers.push(act);
+        let begin = walker.role.as_ref().map_or(0.0, |role| -role.lead);
+        acts.walker_times.extend([begin, enter as f32, leave as f32]);
     }
 
     /// What somebody does who stays.
@@ -238,6 +257,17 @@ impl Bakery {
                     }
                 }
             }
+        }
+    }
+
+    /// Those after the last who does something have nothing to do.
+    fn end_acts(&mut self) {
+        let (stayers, walkers) = (self.tables.stayer_names.len(), self.tables.walkers.len());
+        if let Some(acts) = &mut self.tables.acts {
+            acts.stayers.resize(stayers, NO_ACT);
+            acts.stayer_leads.resize(stayers, 0.0);
+            acts.walkers.resize(walkers, NO_ACT);
+            acts.walker_times.resize(3 * walkers, 0.0);
         }
     }
 

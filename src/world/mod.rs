@@ -73,7 +73,7 @@ pub use patch::{CrowdPatch, Port, Walker};
 pub use path::Path;
 pub use pattern::{Crossing, Pattern, balanced};
 pub use plan::Plan;
-pub use rich::{Member, Role, Tableau};
+pub use rich::{Meeting, Member, Role, Tableau};
 pub use scene::{Layout, WorldScene};
 pub use shape::Shape;
 pub use solve::{Common, Method, Options, Solution, solve, vary};

@@ -211,6 +211,11 @@ impl Plan {
     pub fn patch(&self, column: usize, row: usize) -> Result<CrowdPatch> {
         let bare = self.frame(column, row)?;
         let place = self.cell_key(column, row);
+        // Where nobody finds a way to meet people walk through.
+        let meeting = self.template(column, row).meeting.as_ref();
+        if let Some(patch) = meeting.and_then(|m| m.patch(&bare, &Limits::default(), place)) {
+            return Ok(patch);
+        }
         let cell = || format!("column {column}, row {row}");
         for attempt in 0..ATTEMPTS {
             let frame = self.furnished(&bare, column, row, mix(place, attempt), attempt + 1 == ATTEMPTS);
@@ -227,7 +232,7 @@ impl Plan {
     /// Another version of `patch` (of the cell at a column and row) for the `copy` of the map: objects and ways differ,
     /// patterns and connections do not. A function of the plan and the place. `patch` itself if no version is found soon.
     pub fn version(&self, patch: &CrowdPatch, column: usize, row: usize, copy: [i64; 2]) -> CrowdPatch {
-        if copy == [0, 0] || patch.walkers.is_empty() {
+        if copy == [0, 0] || patch.walkers.iter().all(|w| w.role.is_some()) {
             return patch.clone();
         }
         let place = [column as u64, row as u64, copy[0] as u64, copy[1] as u64].into_iter().fold(!self.seed, mix);

@@ -13,7 +13,7 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::{Amount, Area, Built, Coordinates, Furnishing, Gathering, Plan, Prototype, Template};
+use super::{Amount, Area, Built, Coordinates, Furnishing, Gathering, Meeting, Plan, Prototype, Template};
 use crate::{Error, Result};
 use border::BorderText;
 
@@ -76,6 +76,8 @@ struct TemplateText {
     objects: Vec<Spanned<ObjectText>>,
     #[serde(default)]
     people: Vec<Spanned<PeopleText>>,
+    /// Labels of what people do who come in and meet.
+    meet: Option<Vec<String>>,
     #[serde(default)]
     borders: BTreeMap<String, Spanned<BorderText>>,
 }
@@ -272,6 +274,7 @@ fn template(text: &Spanned<TemplateText>, all: &[Spanned<TemplateText>], bad: &m
     if all.iter().filter(|other| other.get_ref().name.get_ref() == raw.name.get_ref()).count() > 1 {
         bad.add(raw.name.span(), format!("expected one template of a name, found two called {:?}", raw.name.get_ref()));
     }
+    made.meeting = raw.meet.clone().map(|labels| Meeting { labels, ..Meeting::default() });
     for object in &raw.objects {
         let (o, span) = (object.get_ref(), object.span());
         let outline = match (o.disc, o.oblong) {

@@ -11,7 +11,7 @@ use rand::RngExt;
 use rand::seq::IndexedRandom;
 use rand_chacha::ChaCha8Rng;
 
-use super::{FramePatch, Limits, PatternType, Shape, Standing, Tableau};
+use super::{FramePatch, Limits, Meeting, PatternType, Shape, Standing, Tableau};
 
 /// How many of something.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -116,6 +116,9 @@ pub struct Template {
     /// Endogenous people.
     #[serde(default)]
     pub gatherings: Vec<Gathering>,
+    /// What people do who come in and meet, if they do.
+    #[serde(default)]
+    pub meeting: Option<Meeting>,
     /// Pattern type of the border to a patch of another (or the same) template, by its name, seen from this side. Where
     /// both templates name each other the one that comes first counts; where neither does nobody crosses.
     #[serde(default)]
@@ -130,6 +133,7 @@ impl Template {
             ground: ground.into(),
             furnishings: Vec::new(),
             gatherings: Vec::new(),
+            meeting: None,
             borders: BTreeMap::new(),
         }
     }
@@ -162,6 +166,9 @@ impl Template {
         for gathering in &self.gatherings {
             let problem = gathering.amount.problem().or_else(|| gathering.problem());
             found.extend(problem.map(|problem| format!("gathering {:?}: {problem}", gathering.name)));
+        }
+        if self.meeting.is_some() && !(self.furnishings.is_empty() && self.gatherings.is_empty()) {
+            found.push("expected a place to meet without objects and people who stay".into());
         }
         for (name, kind) in &self.borders {
             let flows = [kind.inputs, kind.outputs];

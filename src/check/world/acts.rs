@@ -1,12 +1,13 @@
 //! What people do who stay: their bodies stay in their discs, and clips go on where they begin again.
 
-use glam::{Quat, Vec2, Vec3};
+use glam::{DVec2, Quat, Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::check::report::{Row, Worst};
+use crate::geom::{Capsule, Polygon};
 use crate::motion::{JOINT_COUNT, body_capsules, canonical};
 use crate::stage::World;
-use crate::stage::world::Acts;
+use crate::stage::world::{Acts, Spot};
 
 /// What 16 bits may turn a joint by, radians, and move what hangs on it by, metres.
 const ROUNDED_TURN: f64 = 4e-4;
@@ -38,6 +39,65 @@ pub(super) fn rows(world: &World) -> Vec<Row> {
         turn.row(6, "joints leap where an act begins again", ROUNDED_TURN.to_degrees(), "deg"),
         odd.row(6, "acts do not end with the period", 1e-3, "s"),
     ]
+}
+
+/// Who meets may be so deep in each other, metres: an embrace is as deep as it was captured.
+const EMBRACE: f64 = 0.06;
+/// Hips are so near to where the ordinary sampling has the walker, metres.
+const STRAY: f64 = 0.25;
+
+/// Rows of a world whose walkers meet, with full bodies, thirty times a second over a period; none if nobody meets.
+pub(super) fn meetings(world: &World) -> Vec<Row> {
+    let acts = |kind: usize| (0..world.kind(kind).walkers()).any(|w| world.walker_act(kind, w).is_some());
+    if world.tables().gait.is_none() || !(0..world.kinds()).any(acts) {
+        return Vec::new();
+    }
+    // Patches of one kind are alike.
+    let first = |kind: usize| (0..world.instances()).find(|&i| world.kind_of(i) == kind);
+    let instances: Vec<usize> = (0..world.kinds()).filter(|&kind| acts(kind)).filter_map(first).collect();
+    let frames = (f64::from(world.info().period_secs) * 30.0) as usize;
+    let all: Vec<(usize, f64)> =
+        instances.iter().flat_map(|&i| (0..frames).map(move |f| (i, (f as f64 + 0.5) / 30.0))).collect();
+    let found: Vec<[f64; 3]> = all.par_iter().map(|&(instance, time)| meeting(world, instance, time)).collect();
+    let mut worst: [Worst; 3] = Default::default();
+    for (&(instance, time), values) in all.iter().zip(&found) {
+        let place = || format!("patch {instance} at {time:.2} s");
+        worst.iter_mut().zip(values).for_each(|(worst, &value)| worst.offer(value, place));
+    }
+    let [depth, stray, outside] = worst;
+    vec![
+        depth.row(7, "bodies of who meets enter each other", EMBRACE, "m"),
+        stray.row(7, "hips of who meets are not where they are sampled", STRAY, "m"),
+        outside.row(7, "who meets leaves the patch", 0.0, "m"),
+    ]
+}
+
+/// Depth of bodies in each other, distance of hips from sampled places, how far hips are out of the outline while not crossing it.
+fn meeting(world: &World, instance: usize, time: f64) -> [f64; 3] {
+    let spot = Spot { instance: instance as u32, shift: DVec2::ZERO };
+    let kind = world.kind_of(instance);
+    let outline = Polygon { points: world.kind(kind).outline() };
+    let back = Vec2::from_angle(-world.turn(instance));
+    let mut bodies: Vec<Vec<Capsule>> = Vec::new();
+    let (mut stray, mut outside) = (0.0f64, 0.0f64);
+    let (mut pose, mut globals) = ([Quat::IDENTITY; JOINT_COUNT], Vec::new());
+    let moment = world.moment(time);
+    for (who, walking) in world.walkers_of(instance, &moment).zip(world.bodies(spot, time)) {
+        let hips = world.walker_body(spot, who, &walking, time, &mut pose);
+        canonical().globals(hips, &pose, &mut globals);
+        bodies.push(Vec::new());
+        body_capsules(&globals, bodies.last_mut().expect("just pushed"));
+        let ground = Vec2::new(hips.x, hips.z);
+        stray = stray.max(f64::from(ground.distance(walking.place)));
+        outside = outside.max(f64::from(outline.signed_distance(back.rotate(ground))));
+    }
+    let mut depth = 0.0f32;
+    for (i, a) in bodies.iter().enumerate() {
+        let pairs =
+            bodies[..i].iter().flat_map(|b| a.iter().flat_map(move |p| b.iter().map(move |q| p.penetration(q))));
+        depth = pairs.fold(depth, f32::max);
+    }
+    [f64::from(depth), stray, outside]
 }
 
 /// How far the body of somebody who stays leaves the disc.

@@ -7,7 +7,7 @@
 use glam::{Quat, Vec2, Vec3};
 
 use super::tables::{Tables, expect};
-use super::{Spot, World};
+use super::{Spot, Walking, World};
 use crate::Result;
 use crate::container::{Reader, Writer};
 use crate::motion::JOINT_COUNT;
@@ -16,6 +16,8 @@ use crate::motion::JOINT_COUNT;
 pub(crate) const NO_ACT: u32 = u32::MAX;
 /// What a one is in 16-bit quaternions.
 const ONE: f32 = 32_767.0;
+/// Walk and clip fade into each other over so many seconds after coming in and before going out.
+const FADE_SECS: f64 = 0.5;
 
 /// A clip before it is put into tables.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,6 +45,10 @@ pub struct Acts {
     pub stayers: Vec<u32>,
     /// By how many seconds it is ahead.
     pub stayer_leads: Vec<f32>,
+    /// The clip of every walker of every kind, or none.
+    pub walkers: Vec<u32>,
+    /// Of every walker, seconds since the begin of the period it came in: when its clip begins, when it comes in, when it goes out.
+    pub walker_times: Vec<f32>,
 }
 
 impl Acts {
@@ -83,6 +89,15 @@ impl Acts {
         let at = (secs / f64::from(self.steps[act])).rem_euclid(frames.len() as f64);
         let first = (at as usize).min(frames.len() - 1);
         let next = if first + 1 < frames.len() { first + 1 } else { 0 };
+        self.between(frames.start + first, frames.start + next, (at - first as f64) as f32, pose)
+    }
+
+    /// The same of a clip that is played once: held before its begin and after its end.
+    pub fn sample_once(&self, act: usize, secs: f64, pose: &mut [Quat; JOINT_COUNT]) -> Vec3 {
+        let frames = self.frames(act);
+        let at = (secs / f64::from(self.steps[act])).clamp(0.0, (frames.len() - 1) as f64);
+        let first = at as usize;
+        let next = (first + 1).min(frames.len() - 1);
         self.between(frames.start + first, frames.start + next, (at - first as f64) as f32, pose)
     }
 
@@ -128,12 +143,19 @@ impl Acts {
         let odd = self.stayers.iter().find(|&&a| a != NO_ACT && a as usize >= clips);
         expect(odd.is_none(), "stayer_acts", || format!("a clip below {clips} is expected, {odd:?}"))?;
         let odd = self.stayer_leads.iter().find(|v| !v.is_finite());
-        expect(odd.is_none(), "stayer_act_leads", || format!("{odd:?}"))
+        expect(odd.is_none(), "stayer_act_leads", || format!("{odd:?}"))?;
+        let (people, found) = (tables.walkers.len(), self.walkers.len());
+        expect(found == people, "walker_acts", || format!("{found} for {people} walkers"))?;
+        let odd = self.walkers.iter().find(|&&a| a != NO_ACT && a as usize >= clips);
+        expect(odd.is_none(), "walker_acts", || format!("a clip below {clips} is expected, {odd:?}"))?;
+        let times = self.walker_times.len() == 3 * people && self.walker_times.iter().all(|t| t.is_finite());
+        expect(times, "walker_act_times", || format!("{} numbers for {people} walkers", self.walker_times.len()))
     }
 
     /// Bytes of all arrays.
     pub(super) fn bytes(&self) -> usize {
-        let four = self.ends.len() + self.steps.len() + self.roots.len() + 2 * self.stayers.len();
+        let four =
+            self.ends.len() + self.steps.len() + self.roots.len() + 2 * self.stayers.len() + 4 * self.walkers.len();
         4 * four + 2 * self.rotations.len()
     }
 
@@ -144,6 +166,8 @@ impl Acts {
         writer.array("act_rotations", &self.rotations);
         writer.array("stayer_acts", &self.stayers);
         writer.array("stayer_act_leads", &self.stayer_leads);
+        writer.array("walker_acts", &self.walkers);
+        writer.array("walker_act_times", &self.walker_times);
     }
 
     pub(super) fn read(reader: &Reader) -> Result<Self> {
@@ -154,6 +178,8 @@ impl Acts {
             rotations: reader.array("act_rotations")?,
             stayers: reader.array("stayer_acts")?,
             stayer_leads: reader.array("stayer_act_leads")?,
+            walkers: reader.array("walker_acts")?,
+            walker_times: reader.array("walker_act_times")?,
         })
     }
 }
@@ -165,6 +191,49 @@ impl World {
         let number = self.kind(kind).first_stayer() + index;
         let act = acts.stayers[number];
         (act != NO_ACT).then(|| (act as usize, f64::from(acts.stayer_leads[number])))
+    }
+
+    /// The clip of a walker of a kind, if it has one: seconds since the begin of the period it came in at which the clip begins, the
+    /// walker comes in, and goes out.
+    pub fn walker_act(&self, kind: usize, walker: usize) -> Option<(usize, [f64; 3])> {
+        let acts = self.tables.acts.as_ref()?;
+        let number = self.kind(kind).first_walker() + walker;
+        let times = &acts.walker_times[3 * number..3 * number + 3];
+        let act = acts.walkers[number];
+        (act != NO_ACT).then(|| (act as usize, [times[0], times[1], times[2]].map(f64::from)))
+    }
+
+    /// The body of a walker of a patch (its index in the kind, and the period it came in, as [`World::walkers_of`] says) who is
+    /// `walking` at `time` ([`World::bodies`] says how), be it that it just walks or that it does something: rotations of the canonical
+    /// skeleton into `pose`; returns the hips, relative to the patch's own origin, turned as the patch is. Nobody moves without a
+    /// gait. O(1), no allocation.
+    pub fn walker_body(
+        &self,
+        spot: Spot,
+        (walker, lap): (usize, i64),
+        walking: &Walking,
+        time: f64,
+        pose: &mut [Quat; JOINT_COUNT],
+    ) -> Vec3 {
+        let instance = spot.instance as usize;
+        let ground = Vec3::new(walking.place.x, 0.0, walking.place.y);
+        let hips = self.tables.gait.as_ref().map_or(ground, |gait| walking.pose(&gait.table, pose));
+        let Some((act, [begin, enter, leave])) = self.walker_act(self.kind_of(instance), walker) else { return hips };
+        let period = f64::from(self.info().period_secs);
+        let slot = period / f64::from(self.info().slots);
+        let own = time + f64::from(self.tables.instance_phases[instance]) * slot - lap as f64 * period;
+        let share = (((own - enter).min(leave - own)) / FADE_SECS).clamp(0.0, 1.0) as f32;
+        let share = share * share * (3.0 - 2.0 * share);
+        let mut acted = [Quat::IDENTITY; JOINT_COUNT];
+        let Some(acts) = &self.tables.acts else { return hips };
+        let turn = Quat::from_rotation_y(-self.turn(instance));
+        let place = turn * acts.sample_once(act, own - begin, &mut acted);
+        acted[0] = turn * acted[0];
+        for (q, to) in pose.iter_mut().zip(acted) {
+            let to = if q.dot(to) < 0.0 { -to } else { to };
+            *q = (*q * (1.0 - share) + to * share).normalize();
+        }
+        hips.lerp(place, share)
     }
 
     /// The body of the `index`-th of those who stay in a patch, at `time` (seconds, any): rotations of the canonical skeleton into

@@ -127,6 +127,11 @@ impl<'a> Kind<'a> {
         })
     }
 
+    /// Number of walkers of the kinds before.
+    pub(super) fn first_walker(&self) -> usize {
+        self.run(1).start
+    }
+
     /// Number of those who stay in the kinds before.
     pub(super) fn first_stayer(&self) -> usize {
         self.run(3).start

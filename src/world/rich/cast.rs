@@ -41,6 +41,12 @@ fn cast(templates: &mut [Template], set: &PatchSet, period: f32, seed: u64) -> V
         }
         gathering.tableaux = Arc::new(all);
     }
+    for template in templates {
+        let Some(meeting) = &mut template.meeting else { continue };
+        if !meeting.cast(set) {
+            notes.push(format!("{:?}: nobody meets, no patch is labelled {:?}", template.name, meeting.labels));
+        }
+    }
     notes.sort();
     notes.dedup();
     notes

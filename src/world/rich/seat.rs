@@ -19,19 +19,27 @@ const UNLIKE: f32 = 0.04;
 /// Rounds are played this much faster or slower at most.
 const PACES: std::ops::RangeInclusive<f32> = 0.8..=1.25;
 
-/// A stretch of a motion that can be repeated.
+/// A stretch of a motion that can be repeated: how far its end is from its begin, and how far it gets from there, metres.
 struct Round {
     frames: (usize, usize),
     gap: f32,
+    stirs: f32,
 }
 
-/// Up to `most` sitters alone, those who come nearest to where they began first.
+impl Round {
+    /// The more happens the better, the less has to be led back the better.
+    fn merit(&self) -> f32 {
+        self.stirs - 2.0 * self.gap
+    }
+}
+
+/// Up to `most` sitters alone, the best first.
 pub(super) fn sit(set: &PatchSet, period: f32, most: usize) -> Vec<Tableau> {
     let stretches =
         set.kinds.iter().flat_map(|kind| kind.props.iter().flat_map(move |p| p.sat.iter().map(move |s| (kind, p, s))));
     let mut found: Vec<(f32, Tableau)> =
         stretches.filter_map(|(kind, prop, sat)| sitter(kind, prop, sat, period)).collect();
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
     found.into_iter().take(most).map(|(_, tableau)| tableau).collect()
 }
 
@@ -43,24 +51,28 @@ fn sitter(kind: &PatchKind, prop: &PatchProp, sat: &PropHold, period: f32) -> Op
     let round = round(motion, (first, last), period)?;
     let rest = prop.before?;
     let seat = (Vec2::new(rest.middle.x, rest.middle.z), Vec2::new(prop.size[0], prop.size[2]), -rest.heading);
-    Some((round.gap, Tableau::new(vec![clip(motion, &round, period)], vec![seat])))
+    Some((round.merit(), Tableau::new(vec![clip(motion, &round, period)], vec![seat])))
 }
 
-/// The longest stretch among those that are nearly as good as the best.
+/// The best stretch of all.
 fn round(motion: &Motion, (first, last): (usize, usize), period: f32) -> Option<Round> {
-    let mut found: Vec<Round> = Vec::new();
+    let mut best: Option<Round> = None;
     for begin in (first..last.saturating_sub(SHORTEST)).step_by(2) {
-        for end in (begin + SHORTEST..=last).step_by(2) {
+        let mut stirs = 0.0f32;
+        for end in (begin + 2..=last).step_by(2) {
+            stirs = stirs.max(pose::distance(motion, begin, motion, end));
             let pace = rounds(end - begin, period) * (end - begin) as f32 / (period * FPS);
-            if PACES.contains(&pace) {
-                let gap = pose::window_distance(motion, begin, motion, end, AROUND);
-                found.push(Round { frames: (begin, end), gap });
+            if end < begin + SHORTEST || !PACES.contains(&pace) {
+                continue;
+            }
+            let gap = pose::window_distance(motion, begin, motion, end, AROUND);
+            let round = Round { frames: (begin, end), gap, stirs };
+            if gap < UNLIKE && best.as_ref().is_none_or(|b| round.merit() > b.merit()) {
+                best = Some(round);
             }
         }
     }
-    let best = found.iter().map(|r| r.gap).fold(f32::INFINITY, f32::min);
-    let good = found.into_iter().filter(|r| r.gap < UNLIKE && r.gap < 1.5 * best + 0.003);
-    good.max_by_key(|r| r.frames.1 - r.frames.0)
+    best
 }
 
 /// How often a stretch of so many frames goes into a period.
