@@ -2,8 +2,7 @@
 //! on time.
 //!
 //! Where and when they cross is given, as ports: a walk of one person is laid rigidly across the border, so that it is there at
-//! the moment, that way, about as fast. Then patches of several people are put in with how their people come and part, and
-//! bridges lead from the borders to them and from them to other borders, to the tick. Who leads to whom is open, so that what
+//! the moment, that way, about as fast. Then patches of several people are put in, and bridges lead from the borders to them and from them to other borders, to the tick. Who leads to whom is open, so that what
 //! does not fit is tried with somebody else; who meets nobody goes straight across. All is seen modulo the period: whoever
 //! comes a lap later keeps clear of whoever is still there.
 
@@ -21,7 +20,7 @@ use super::faults::{captured_depth, is_rushed};
 use super::figure::{Figure, TOLERANCE};
 use super::library::{Library, Move};
 use super::occupancy::PieceId;
-use super::passage::{Passages, Site, Way, parts, put, shuffled};
+use super::passage::{Part, parts};
 use super::piece::{Company, Piece, Shift};
 use super::rehearsal::segments;
 use super::tracks::Tracks;
@@ -37,19 +36,19 @@ const BRISK: f32 = 0.6;
 const ASKEW: f32 = 0.2;
 const STRAIGHT: f32 = 0.12;
 /// The walk across a border lasts so many ticks, and is at the border after this part of it when coming in.
-const CROSSING: std::ops::RangeInclusive<i32> = 14..=60;
-const EARLY: f32 = 0.45;
+const CROSSING: std::ops::RangeInclusive<i32> = 26..=64;
+const EARLY: f32 = 0.3;
 /// Beginnings from scratch, and places that are tried for a meeting.
 const BEGINNINGS: u64 = 24;
-const PLACES: usize = 160;
+const PLACES: usize = 600;
 /// People of a meeting are led from and to so many crossings at most before it is given up.
 const CROSSINGS: usize = 3;
 /// Mean speeds on the way between crossings and meetings, m/s, and seconds that may be spent besides.
-const PACE: [f32; 2] = [0.75, 1.35];
-const SPARE: f32 = 1.2;
+const PACE: [f32; 2] = [0.65, 1.35];
+const SPARE: f32 = 2.0;
 /// Where people meet is so far inside, metres.
 const INSIDE: f32 = 1.5;
-const TASTE: Taste = Taste { calm: 1.0, expansions: 260 };
+const TASTE: Taste = Taste { calm: 1.0, expansions: 500 };
 /// Joints may turn this much faster than in the captures.
 const RUSH: f32 = 1.2;
 
@@ -109,18 +108,20 @@ pub(crate) fn playable(set: &PatchSet, meant: impl Fn(&PatchKind) -> bool) -> Pa
     set.only(|k| k.props.is_empty() && !odd(k) && (k.people() == 1 || meant(k)))
 }
 
+/// TRACE
+pub(crate) static TRACE: [std::sync::atomic::AtomicUsize; 12] = [const { std::sync::atomic::AtomicUsize::new(0) }; 12];
+fn bump(i: usize) { TRACE[i].fetch_add(1, std::sync::atomic::Ordering::Relaxed); }
 /// Fills a place; `None` if no way was found for everybody. The same seed gives the same visits.
 pub(crate) fn visits(place: &Place, set: &PatchSet, seed: u64) -> Option<Vec<Visit>> {
     check_set(set).ok()?;
     let library = Library::new(set, Limits::TIGHT);
-    let passages = Passages::new(&library);
     let scene = Scene::new(place.outline.clone(), place.period, 0);
     let looped = Scene { periodic: Periodic { t: true, ..Periodic::default() }, ..scene.clone() };
     let domain = Domain::new(&looped).ok()?;
     (0..BEGINNINGS).find_map(|again| {
         let mut rng = ChaCha8Rng::seed_from_u64(seed.wrapping_add(again.wrapping_mul(0x9e37_79b9_7f4a_7c15)));
         let crossings = lay_all(place, &library, &domain, &mut rng)?;
-        let hosting = Hosting { place, passages: &passages, crossings: &crossings, lap: domain.horizon };
+        let hosting = Hosting { place, crossings: &crossings, lap: domain.horizon };
         hosting.visits(&library, &domain, &scene, &mut rng)
     })
 }
@@ -168,7 +169,6 @@ fn lay(
 /// Who comes, who goes, and what there is to do.
 struct Hosting<'a> {
     place: &'a Place<'a>,
-    passages: &'a Passages<'a>,
     crossings: &'a [Vec<Piece>; 2],
     /// Ticks of a period.
     lap: i32,
@@ -183,7 +183,9 @@ impl Hosting<'_> {
         let _ = tracks.fix(self.crossings.iter().flatten().cloned());
         let mut desk = Desk::default();
         let mut draft = Draft::new(&tracks, &mut desk);
+        bump(4);
         let lives = self.lives(&mut draft, rng)?;
+        bump(5);
         let chains: Vec<Vec<Piece>> = lives.iter().map(|life| self.chain(&draft, life)).collect();
         let bodies = played(library, scene, &chains)?;
         self.are_clean(library, domain, &chains, &bodies).then(|| {
@@ -213,6 +215,7 @@ impl Hosting<'_> {
         if lives.is_empty() {
             return None;
         }
+        bump(8);
         open.iter_mut().for_each(|list| list.shuffle(rng));
         while let Some(comes) = open[0].pop() {
             let (place, life) =
@@ -256,18 +259,20 @@ impl Hosting<'_> {
         let at = Ground::new(at, range(-std::f32::consts::PI, std::f32::consts::PI, rng));
         let clock = rng.random_range(0..self.lap);
         let roles = parts(library, kind, at, clock);
+        // Before anything is searched: everybody must have somewhere to come from and to go to.
+        let hopeful = |p: &Part| {
+            !self.ways_in(draft, p, open).is_empty() && !self.ways_out(draft, p, open, usize::MAX).is_empty()
+        };
+        if !roles.iter().all(hopeful) {
+            return None;
+        }
+        TRACE[0].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let ids = draft.add_patch(roles.iter().map(|p| (p.role, p.entry)))?;
         let instance = draft.piece(ids[0]).instance;
-        let site = Site { world_from_patch: at, clock, ends: [instance, NO_INSTANCE] };
-        let way = |draft: &mut Draft, way: Way, rng: &mut ChaCha8Rng| {
-            let all = shuffled(library, self.passages.of(kind, way), rng);
-            all.into_iter().find_map(|passage| put(draft, passage, site, |_, _| true))
-        };
-        let (come, part) = (way(draft, Way::Come, rng)?, way(draft, Way::Part, rng)?);
+        TRACE[1].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let (mut open, mut lives) = (open.clone(), Vec::new());
-        for (role, &id) in ids.iter().enumerate() {
-            let middle = [come[role].as_slice(), &[id], &part[role]].concat();
-            let life = self.visitor(draft, middle, &open, rng)?;
+        for (part, &id) in roles.iter().zip(&ids) {
+            let life = self.visitor(draft, (part, id, instance), &open, rng)?;
             open[0].retain(|&i| i != life.comes);
             open[1].retain(|&i| i != life.goes);
             lives.push(life);
@@ -275,30 +280,43 @@ impl Hosting<'_> {
         Some(lives)
     }
 
-    /// Leads somebody from an open crossing to what they do, and from there to another.
-    fn visitor(&self, draft: &mut Draft, middle: Vec<PieceId>, open: &Open, rng: &mut ChaCha8Rng) -> Option<Life> {
-        let library = draft.base.library;
-        let (first, last) = (draft.piece(middle[0]), draft.piece(middle[middle.len() - 1]));
-        let (begin, end) = (library.entry_of(first), library.exit_of(last));
-        let from = |i: usize| library.exit_of(&self.crossings[0][i]);
-        // Who comes does so laps earlier: as much as what they come to would have to be later.
-        let ways_in: Vec<(usize, i32)> =
-            open[0].iter().filter_map(|&i| Some((i, -self.late(from(i), begin)?))).take(CROSSINGS).collect();
-        let (comes, early, way_in) = ways_in.into_iter().find_map(|(i, lap)| {
-            let way = draft.search(later(from(i), lap), Goal::Port(begin), Company::NONE, TASTE, rng)?;
-            Some((i, lap, way))
+    /// Leads somebody from an open crossing to a role, and from there to another crossing.
+    fn visitor(
+        &self,
+        draft: &mut Draft,
+        (part, id, instance): (&Part, PieceId, u32),
+        open: &Open,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Life> {
+        let arriving = Company { to: instance, ..Company::NONE };
+        let (comes, early, way_in) = self.ways_in(draft, part, open).into_iter().find_map(|(i, lap)| {
+            let from = later(draft.base.library.exit_of(&self.crossings[0][i]), lap);
+            Some((i, lap, draft.search(from, Goal::Port(part.entry), arriving, TASTE, rng)?))
         })?;
+        TRACE[2].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        let parting = Company { from: instance, ..Company::NONE };
         let edge = self.place.comes[comes].edge;
-        let to = |i: usize| library.entry_of(&self.crossings[1][i]);
-        let others = open[1].iter().filter(|&&i| self.place.goes[i].edge != edge);
-        let ways_out: Vec<(usize, i32)> =
-            others.filter_map(|&i| Some((i, self.late(end, to(i))?))).take(CROSSINGS).collect();
-        let (goes, late, way_out) = ways_out.into_iter().find_map(|(i, lap)| {
-            let way = draft.search(end, Goal::Port(later(to(i), lap)), Company::NONE, TASTE, rng)?;
-            Some((i, lap, way))
+        let (goes, late, way_out) = self.ways_out(draft, part, open, edge).into_iter().find_map(|(i, lap)| {
+            let to = later(draft.base.library.entry_of(&self.crossings[1][i]), lap);
+            Some((i, lap, draft.search(part.exit, Goal::Port(to), parting, TASTE, rng)?))
         })?;
-        let ids = [way_in, middle, way_out].concat();
+        TRACE[3].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        let ids = [way_in, vec![id], way_out].concat();
         Some(Life { comes, goes, shifts: [early, late], ids, meets: true })
+    }
+
+    /// Open crossings from which somebody gets to a role at an easy pace, and how many ticks (whole laps) later they are then.
+    fn ways_in(&self, draft: &Draft, part: &Part, open: &Open) -> Vec<(usize, i32)> {
+        let from = |i: usize| draft.base.library.exit_of(&self.crossings[0][i]);
+        let ways = open[0].iter().filter_map(|&i| Some((i, -self.late(from(i), part.entry)?)));
+        ways.take(CROSSINGS).collect()
+    }
+
+    /// The same from a role on, not back over the edge that somebody came by.
+    fn ways_out(&self, draft: &Draft, part: &Part, open: &Open, edge: usize) -> Vec<(usize, i32)> {
+        let to = |i: usize| draft.base.library.entry_of(&self.crossings[1][i]);
+        let others = open[1].iter().filter(|&&i| self.place.goes[i].edge != edge);
+        others.filter_map(|&i| Some((i, self.late(part.exit, to(i))?))).take(CROSSINGS).collect()
     }
 
     /// All pieces of a life, the crossings included, on one clock.
@@ -312,7 +330,7 @@ impl Hosting<'_> {
 
     /// True if everybody moves as people can, and nobody runs into anybody else, nor into whoever comes laps later.
     fn are_clean(&self, library: &Library, domain: &Domain, chains: &[Vec<Piece>], bodies: &[Body]) -> bool {
-        let sound = |b: &Body| b.strained.is_empty() && !(1..b.root.len()).any(|f| is_rushed(b, library, f, RUSH));
+        let sound = |b: &Body| { if !b.strained.is_empty() { bump(6); } let r = (1..b.root.len()).any(|f| is_rushed(b, library, f, RUSH)); if r { bump(7); } b.strained.is_empty() && !r };
         let laps = 1 + bodies.iter().map(|b| b.root.len() as i32).max().unwrap_or(0) / self.lap;
         let pairs = (0..bodies.len()).flat_map(|i| (0..=i).map(move |j| (i, j)));
         bodies.iter().all(sound)
