@@ -181,3 +181,48 @@ fn joints_for_pictures() {
     }
     std::fs::write(Path::new(&folder).join("acts.jsonl"), text).unwrap();
 }
+
+/// Somebody alone who waits.
+const ALONE: &str = r#"
+period_secs = 6.0
+map = "p"
+
+[[templates]]
+name = "place"
+key = "p"
+people = [{ name = "wait", group = [1, 1], number = [1, 1] }]
+"#;
+
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Moment {
+    time: f64,
+    joints: Vec<f32>,
+}
+
+/// The committed file is what the viewer's tests read as well (`studio/test/acts.test.ts`).
+#[test]
+fn a_committed_file_plays_what_it_always_played() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/files"));
+    if std::env::var_os("CROWDQUILT_WRITE_FILES").is_some() {
+        let scene = WorldScene::from_toml(ALONE, Path::new(".")).unwrap().with_acts(set()).0;
+        let world = scene.build(&|_, _| true).unwrap().world;
+        world.save(&folder.join("acts.world")).unwrap();
+        let moments: Vec<Moment> = [0.0, 1.234, 5.99, 3607.5].map(|time| moment(&world, time)).into();
+        std::fs::write(folder.join("acts.world.json"), serde_json::to_string(&moments).unwrap()).unwrap();
+    }
+    let world = World::load(&folder.join("acts.world")).unwrap();
+    let text = std::fs::read_to_string(folder.join("acts.world.json")).unwrap();
+    for expected in serde_json::from_str::<Vec<Moment>>(&text).unwrap() {
+        let found = moment(&world, expected.time).joints;
+        assert_eq!(found.len(), 3 * JOINT_COUNT);
+        assert!(found.iter().zip(&expected.joints).all(|(a, b)| (a - b).abs() < 1e-4), "at {} s", expected.time);
+    }
+}
+
+fn moment(world: &World, time: f64) -> Moment {
+    let (spot, index) = everybody(world).next().expect("somebody");
+    let place = world.place(0).as_vec2();
+    let all = joints(world, spot, index, time);
+    let joints = all.iter().flat_map(|j| (j.0 + Vec3::new(place.x, 0.0, place.y)).to_array()).collect();
+    Moment { time, joints }
+}

@@ -60,4 +60,4 @@ pub use prefer::{Field, Form, Preference, Term};
 pub use scene::{KindFilter, Periodic, Placed, Scene, Sink, Source, Team, Wang};
 pub use session::{Review, Session, review};
 pub use study::study;
-pub(crate) use visit::{TRACE, Crossing, Place, Visit, playable, visits};
+pub(crate) use visit::{Crossing, Place, Visit, playable, visits};

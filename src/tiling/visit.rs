@@ -89,8 +89,6 @@ pub(crate) struct Visit {
     pub begin: f32,
     /// The final body, from before it comes in until after it goes out.
     pub body: Body,
-    /// Whether it meets others.
-    pub meets: bool,
 }
 
 /// Somebody's pieces: `ids` in order of time, led to laps earlier and from laps later than the crossings' own.
@@ -99,7 +97,6 @@ struct Life {
     goes: usize,
     shifts: [i32; 2],
     ids: Vec<PieceId>,
-    meets: bool,
 }
 
 /// The kinds of a set that visitors can play.
@@ -108,9 +105,6 @@ pub(crate) fn playable(set: &PatchSet, meant: impl Fn(&PatchKind) -> bool) -> Pa
     set.only(|k| k.props.is_empty() && !odd(k) && (k.people() == 1 || meant(k)))
 }
 
-/// TRACE
-pub(crate) static TRACE: [std::sync::atomic::AtomicUsize; 12] = [const { std::sync::atomic::AtomicUsize::new(0) }; 12];
-fn bump(i: usize) { TRACE[i].fetch_add(1, std::sync::atomic::Ordering::Relaxed); }
 /// Fills a place; `None` if no way was found for everybody. The same seed gives the same visits.
 pub(crate) fn visits(place: &Place, set: &PatchSet, seed: u64) -> Option<Vec<Visit>> {
     check_set(set).ok()?;
@@ -183,9 +177,7 @@ impl Hosting<'_> {
         let _ = tracks.fix(self.crossings.iter().flatten().cloned());
         let mut desk = Desk::default();
         let mut draft = Draft::new(&tracks, &mut desk);
-        bump(4);
         let lives = self.lives(&mut draft, rng)?;
-        bump(5);
         let chains: Vec<Vec<Piece>> = lives.iter().map(|life| self.chain(&draft, life)).collect();
         let bodies = played(library, scene, &chains)?;
         self.are_clean(library, domain, &chains, &bodies).then(|| {
@@ -215,7 +207,6 @@ impl Hosting<'_> {
         if lives.is_empty() {
             return None;
         }
-        bump(8);
         open.iter_mut().for_each(|list| list.shuffle(rng));
         while let Some(comes) = open[0].pop() {
             let (place, life) =
@@ -236,7 +227,7 @@ impl Hosting<'_> {
         let to = library.entry_of(&self.crossings[1][goes]);
         let lap = self.late(from, to)?;
         let ids = draft.search(from, Goal::Port(later(to, lap)), Company::NONE, TASTE, rng)?;
-        Some(Life { comes, goes, shifts: [0, lap], ids, meets: false })
+        Some(Life { comes, goes, shifts: [0, lap], ids })
     }
 
     /// By how many ticks (whole laps) `to` must be later, so that a person gets there from `from` at an easy pace.
@@ -266,10 +257,8 @@ impl Hosting<'_> {
         if !roles.iter().all(hopeful) {
             return None;
         }
-        TRACE[0].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let ids = draft.add_patch(roles.iter().map(|p| (p.role, p.entry)))?;
         let instance = draft.piece(ids[0]).instance;
-        TRACE[1].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let (mut open, mut lives) = (open.clone(), Vec::new());
         for (part, &id) in roles.iter().zip(&ids) {
             let life = self.visitor(draft, (part, id, instance), &open, rng)?;
@@ -293,16 +282,14 @@ impl Hosting<'_> {
             let from = later(draft.base.library.exit_of(&self.crossings[0][i]), lap);
             Some((i, lap, draft.search(from, Goal::Port(part.entry), arriving, TASTE, rng)?))
         })?;
-        TRACE[2].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let parting = Company { from: instance, ..Company::NONE };
         let edge = self.place.comes[comes].edge;
         let (goes, late, way_out) = self.ways_out(draft, part, open, edge).into_iter().find_map(|(i, lap)| {
             let to = later(draft.base.library.entry_of(&self.crossings[1][i]), lap);
             Some((i, lap, draft.search(part.exit, Goal::Port(to), parting, TASTE, rng)?))
         })?;
-        TRACE[3].fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let ids = [way_in, vec![id], way_out].concat();
-        Some(Life { comes, goes, shifts: [early, late], ids, meets: true })
+        Some(Life { comes, goes, shifts: [early, late], ids })
     }
 
     /// Open crossings from which somebody gets to a role at an easy pace, and how many ticks (whole laps) later they are then.
@@ -330,7 +317,7 @@ impl Hosting<'_> {
 
     /// True if everybody moves as people can, and nobody runs into anybody else, nor into whoever comes laps later.
     fn are_clean(&self, library: &Library, domain: &Domain, chains: &[Vec<Piece>], bodies: &[Body]) -> bool {
-        let sound = |b: &Body| { if !b.strained.is_empty() { bump(6); } let r = (1..b.root.len()).any(|f| is_rushed(b, library, f, RUSH)); if r { bump(7); } b.strained.is_empty() && !r };
+        let sound = |b: &Body| b.strained.is_empty() && !(1..b.root.len()).any(|f| is_rushed(b, library, f, RUSH));
         let laps = 1 + bodies.iter().map(|b| b.root.len() as i32).max().unwrap_or(0) / self.lap;
         let pairs = (0..bodies.len()).flat_map(|i| (0..=i).map(move |j| (i, j)));
         bodies.iter().all(sound)
@@ -374,12 +361,11 @@ impl Hosting<'_> {
     }
 
     fn visit(&self, life: &Life, chain: &[Piece], body: Body) -> Visit {
-        let meets = life.meets;
         let laps = (life.shifts[1] - life.shifts[0]) / self.lap;
         debug_assert!(chain.windows(2).all(|w| w[0].end == w[1].begin), "pieces follow each other");
         // Bodies were played on a clock that is ahead.
         let first = body.begin as i32 - START - life.shifts[0];
-        Visit { comes: life.comes, goes: life.goes, laps: laps.max(0) as u32, begin: first as f32 / FPS, body, meets }
+        Visit { comes: life.comes, goes: life.goes, laps: laps.max(0) as u32, begin: first as f32 / FPS, body }
     }
 }
 

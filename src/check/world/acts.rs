@@ -44,7 +44,7 @@ pub(super) fn rows(world: &World) -> Vec<Row> {
 }
 
 /// Who meets may be so deep in each other, metres: an embrace is as deep as it was captured.
-const EMBRACE: f64 = 0.06;
+const EMBRACE: f64 = 0.08;
 /// Hips are so near to where the ordinary sampling has the walker, metres.
 const STRAY: f64 = 0.25;
 
@@ -70,7 +70,7 @@ pub(super) fn meetings(world: &World) -> Vec<Row> {
     vec![
         depth.row(7, "bodies of who meets enter each other", EMBRACE, "m"),
         stray.row(7, "hips of who meets are not where they are sampled", STRAY, "m"),
-        outside.row(7, "who meets leaves the patch", 0.0, "m"),
+        outside.row(7, "who meets leaves the patch", ROUNDED_PLACE, "m"),
     ]
 }
 
@@ -91,7 +91,9 @@ fn meeting(world: &World, instance: usize, time: f64) -> [f64; 3] {
         body_capsules(&globals, bodies.last_mut().expect("just pushed"));
         let ground = Vec2::new(hips.x, hips.z);
         stray = stray.max(f64::from(ground.distance(walking.place)));
-        outside = outside.max(f64::from(outline.signed_distance(back.rotate(ground))));
+        if is_within(world, instance, who, time) {
+            outside = outside.max(f64::from(outline.signed_distance(back.rotate(ground))));
+        }
     }
     let mut depth = 0.0f32;
     for (i, a) in bodies.iter().enumerate() {
@@ -100,6 +102,14 @@ fn meeting(world: &World, instance: usize, time: f64) -> [f64; 3] {
         depth = pairs.fold(depth, f32::max);
     }
     [f64::from(depth), stray, outside]
+}
+
+/// Whether somebody has come in and not gone out at a time: slots begin and end a moment before or after.
+fn is_within(world: &World, instance: usize, (walker, lap): (usize, i64), time: f64) -> bool {
+    let (period, slots) = (f64::from(world.info().period_secs), f64::from(world.info().slots));
+    let own = time + f64::from(world.tables().instance_phases[instance]) * period / slots - lap as f64 * period;
+    let times = world.walker_act(world.kind_of(instance), walker);
+    times.is_some_and(|(_, [_, enter, leave])| enter < own && own < leave)
 }
 
 /// How far the body of somebody who stays leaves the disc.

@@ -65,10 +65,7 @@ fn solve(frame: &FramePatch, set: &PatchSet, limits: &Limits, seed: u64) -> Opti
     let (comes, goes) = (crossings(&ins), crossings(&outs));
     let outline = Polygon { points: frame.outline.clone() };
     let place = Place { outline: &outline, period: frame.period(), comes: &comes, goes: &goes };
-    let found = visits(&place, set, seed);
-    eprintln!("hopeful, put, in, out, begun, lives, strained, rushed, some: {:?}", crate::tiling::TRACE);
-    let mut found = found?;
-    eprintln!("FOUND {:?}", found.iter().map(|v| (v.comes, v.goes, v.laps, v.begin, v.meets)).collect::<Vec<_>>());
+    let mut found = visits(&place, set, seed)?;
     found.sort_by_key(|visit| visit.comes);
     let walker = |visit: &Visit| {
         let leave = outs[visit.goes].later(f64::from(visit.laps) * f64::from(frame.period()));
@@ -120,11 +117,6 @@ fn way(frame: &FramePatch, visit: &Visit, ends: [Line; 2], smoothed: f32, limits
         }
     }
     let path = Path { step: STEP, first, points: points.into_iter().map(|p| p.as_vec2()).collect() };
-    if !can_be_walked(frame, &path, &ends, limits) {
-        let t = |f: &dyn Fn(f64) -> f32| (0..400).map(|i| f(enter.time + (leave.time - enter.time) * f64::from(i) / 400.0)).fold(0.0, f32::max);
-        let turn = |t: f64| { let (v, a) = (path.velocity(t), path.acceleration(t)); if v.length() > 0.2 { v.perp_dot(a).abs() / v.length_squared() } else { 0.0 } };
-        eprintln!("way {smoothed}: speed {} acc {} turn {}", t(&|t| path.velocity(t).length()), t(&|t| path.acceleration(t).length()), t(&turn));
-    }
     can_be_walked(frame, &path, &ends, limits).then_some(path)
 }
 

@@ -16,6 +16,8 @@ const SETTLING: usize = 8;
 const AROUND: usize = 3;
 /// Poses that are farther from each other than this, metres, do not make a round.
 const UNLIKE: f32 = 0.04;
+/// Sitters whose merit is below this part of the best one's are left out.
+const LIVELY: f32 = 0.4;
 /// Rounds are played this much faster or slower at most.
 const PACES: std::ops::RangeInclusive<f32> = 0.8..=1.25;
 
@@ -40,7 +42,9 @@ pub(super) fn sit(set: &PatchSet, period: f32, most: usize) -> Vec<Tableau> {
     let mut found: Vec<(f32, Tableau)> =
         stretches.filter_map(|(kind, prop, sat)| sitter(kind, prop, sat, period)).collect();
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    found.into_iter().take(most).map(|(_, tableau)| tableau).collect()
+    // Who sits like a stone is left out where there are others.
+    let least = LIVELY * found.first().map_or(0.0, |best| best.0);
+    found.into_iter().take_while(|f| f.0 >= least).take(most).map(|(_, tableau)| tableau).collect()
 }
 
 fn sitter(kind: &PatchKind, prop: &PatchProp, sat: &PropHold, period: f32) -> Option<(f32, Tableau)> {

@@ -90,8 +90,9 @@ export class Figures {
 
   private dress(slot: number, walker: Walker): void {
     if (!this.gait || !this.places || !this.turns || !this.looks) return;
-    const poser = walker.act ? this.actor : this.poser;
-    poser?.pose(walker, this.places, this.turns, slot * this.gait.joints.length * 4);
+    const at = slot * this.gait.joints.length * 4;
+    if (walker.act?.share !== 1) this.poser?.pose(walker, this.places, this.turns, at);
+    if (walker.act) this.actor?.pose(walker.act, this.places, this.turns, at);
     this.looks.set(looksOf(walker.id % 4096), slot * PART_COUNT * 4);
   }
 

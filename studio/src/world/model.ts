@@ -35,6 +35,9 @@ export interface Acts {
   /** The clip of everybody who stays, or none; and by how many seconds it is ahead. */
   stayers: Uint32Array;
   leads: Float32Array;
+  /** The clip of every walker of every kind, or none; when it begins, and when the walker comes in and goes out. */
+  walkers: Uint32Array;
+  times: Float32Array;
 }
 
 export interface Thing {

@@ -1,5 +1,6 @@
 /** Where everybody is at any time: the same sums as src/stage/world/rows.rs, for the patches that are near. */
 
+import { visit } from "./acts";
 import type { Place, World } from "./model";
 
 /** Somebody who walks. */
@@ -13,8 +14,19 @@ export interface Walker {
   phase: number;
   /** The same for the same person at any time. */
   id: number;
-  /** Who does something else than walk: which clip, at which second of it. */
-  act?: { clip: number; secs: number };
+  /** Who does something else than walk. */
+  act?: Act | undefined;
+}
+
+/** A clip at some second of it, seen from a place on the ground, and how much it shows through. */
+export interface Act {
+  clip: number;
+  secs: number;
+  repeats: boolean;
+  x: number;
+  z: number;
+  heading: number;
+  share: number;
 }
 
 /** A time slot and the weights of control points in it. */
@@ -85,6 +97,7 @@ export class Sampler {
         heading: body.heading - place.turn,
         phase: body.phase,
         id: this.person(crossing, now.lap - ago, copy),
+        act: visit(world, place, walker, secs, now.lap - ago, shift),
       });
     }
   }
