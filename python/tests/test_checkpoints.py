@@ -17,14 +17,31 @@ import crowdquilt as cq
 from conftest import crowdquilt
 
 
-def run_until(checkpoint: Path, patches: Path, out: Path, count: int, how: signal.Signals) -> int:
+WISH = 280
+SQUARE = f"""
+region = [[0, 0], [24, 0], [24, 24], [0, 24]]
+duration_secs = 20
+characters = {WISH}
+interaction = 0.25
+"""
+
+
+@pytest.fixture
+def square(tmp_path: Path) -> Path:
+    """A scene that takes seconds: whoever looks every 50 ms sees it grow."""
+    path = tmp_path / "square.toml"
+    path.write_text(SQUARE)
+    return path
+
+
+def run_until(checkpoint: Path, args: list[object], count: int, how: signal.Signals) -> int:
     """Tile with a checkpoint every 50 ms and send a signal once it holds so many people; how many it holds then."""
     text = f"""
 import sys
 from crowdquilt.cli import main, progress
 real = progress.tile
 progress.tile = lambda *args, **kwargs: real(*args, **kwargs, checkpoint_every=0.05)
-sys.argv = ["crowdquilt", "tile", {str(patches)!r}, "-o", {str(out)!r}, "--characters", "90", "--threads", "1"]
+sys.argv = {["crowdquilt", "tile", *map(str, args), "--threads", "1"]!r}
 main()
 """
     running = subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -39,17 +56,17 @@ main()
     return len(cq.tiling.Checkpoint.load(checkpoint))
 
 
-@pytest.mark.parametrize("count", [1, 25, 70])
-def test_a_killed_run_goes_on(tmp_path: Path, patches: Path, count: int) -> None:
+@pytest.mark.parametrize("count", [1, 60, 150])
+def test_a_killed_run_goes_on(tmp_path: Path, patches: Path, square: Path, count: int) -> None:
     checkpoint, out = tmp_path / "crowd.tiling", tmp_path / "crowd.crowd"
-    held = run_until(checkpoint, patches, out, count, signal.SIGKILL)
+    held = run_until(checkpoint, [patches, "-o", out, "--scene", square], count, signal.SIGKILL)
     assert held >= count and not out.exists()
     # What is there is told without going on, and nothing changes.
     bytes_before = checkpoint.read_bytes()
     told = crowdquilt("tile", "--resume", checkpoint, "--time", 0)
-    assert told.returncode == (3 if held < 90 else 0), told.stdout + told.stderr
+    assert told.returncode == (3 if held < WISH else 0), told.stdout + told.stderr
     assert re.search(rf"{held} people, \d+ patches", told.stdout), told.stdout
-    assert ", 0 faults" in told.stdout and "wished for: 90 people" in told.stdout
+    assert ", 0 faults" in told.stdout and f"wished for: {WISH} people" in told.stdout
     assert checkpoint.read_bytes() == bytes_before and not out.exists()
     # The same checkpoint leads to the same crowd with one thread and with two; it goes when the crowd is perfect.
     shutil.copy(checkpoint, tmp_path / "again.tiling")
@@ -59,14 +76,15 @@ def test_a_killed_run_goes_on(tmp_path: Path, patches: Path, count: int) -> None
     assert crowdquilt("tile", "--resume", tmp_path / "again.tiling", "--threads", 2).returncode == 0
     assert out.read_bytes() == (tmp_path / "again.crowd").read_bytes()
     crowd = cq.Crowd.load(out)
-    assert len(crowd) == 90 and cq.check.check(crowd).ok
+    assert len(crowd) == WISH and cq.check.check(crowd).ok
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="SIGTERM is a Unix signal")
-def test_sigterm_saves_what_there_is(tmp_path: Path, patches: Path) -> None:
+def test_sigterm_saves_what_there_is(tmp_path: Path, patches: Path, square: Path) -> None:
     checkpoint, out = tmp_path / "crowd.tiling", tmp_path / "crowd.crowd"
-    held = run_until(checkpoint, patches, out, 10, signal.SIGTERM)
-    assert len(cq.Crowd.load(out)) == held < 90
+    more_than_find_room = [patches, "-o", out, "--scene", square, "--characters", 5000]
+    held = run_until(checkpoint, more_than_find_room, 10, signal.SIGTERM)
+    assert len(cq.Crowd.load(out)) == held < 5000
 
 
 def test_checkpoints_are_where_they_are_wanted(tmp_path: Path, patches: Path, scene: Path) -> None:
