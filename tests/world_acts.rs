@@ -145,6 +145,18 @@ fn the_world_passes_its_check_and_a_broken_one_does_not() {
 }
 
 #[test]
+fn the_street_is_as_sound_with_acts() {
+    let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/worlds/street.toml"));
+    let (scene, notes) = WorldScene::load(file).unwrap().with_acts(set());
+    assert_eq!(notes, Vec::<String>::new());
+    let world = scene.build(&|_, _| true).unwrap().world;
+    assert!(world.tables().acts.is_some());
+    let report = check_world(&world);
+    let bad: Vec<_> = report.rows.iter().filter(|r| !r.ok).map(|r| (&r.row, r.value)).collect();
+    assert!(bad.is_empty(), "{bad:?}");
+}
+
+#[test]
 fn a_file_keeps_acts_and_refuses_broken_ones() {
     let world = world();
     let again = World::from_bytes(&world.to_bytes()).unwrap();

@@ -121,8 +121,8 @@ fn bodies_never_leap_and_are_the_same_after_hours() {
         }
     }
     println!("greatest step of a joint {leap:.3} m, drift after an hour {drift:.6} m, units of {UNITS_PER_METRE}");
-    // 7.5 m/s: a swinging foot or hand.
-    assert!(leap < 0.25 && drift < 2e-3, "{leap} {drift}");
+    // 9 m/s: a foot that swings while walk and clip fade into each other.
+    assert!(leap < 0.3 && drift < 2e-3, "{leap} {drift}");
 }
 
 /// Writes joints for a look from outside, if a folder is named.

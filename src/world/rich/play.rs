@@ -16,10 +16,12 @@ use crate::tiling::{Options, Scene, Status, tile};
 
 /// Seeds that are tried.
 const SEEDS: u64 = 8;
-/// Shares of the time in patches of several people that are wished for, the greatest first.
-const TOGETHER: [f32; 4] = [0.75, 0.55, 0.4, 0.2];
+/// Where none of the first few of them leads to anything the others are left alone.
+const FIRST_SEEDS: usize = 2;
+/// Shares of the time in patches of several people that are wished for, one after the other as long as that goes well.
+const TOGETHER: [f32; 4] = [0.2, 0.4, 0.55, 0.75];
 /// Longest time for one; what is usual is a tenth of a second.
-const SECS: f64 = 20.0;
+const SECS: f64 = 10.0;
 /// Who stays does nothing that reaches farther, metres.
 const NEAR: f32 = 0.75;
 /// Room that somebody alone has, and how much more each further person needs, metres.
@@ -43,7 +45,7 @@ pub(super) struct Wish<'a> {
     pub seed: u64,
 }
 
-/// Up to `most` tableaux as wished, those with the most company first; none if the set has none.
+/// Up to `most` tableaux as wished, those with the most company first; none if the set has none. O(seeds x a tiling of some seconds).
 pub(super) fn play(set: &PatchSet, wish: Wish, most: usize) -> Vec<Tableau> {
     if wish.people > MOST {
         return Vec::new();
@@ -51,7 +53,12 @@ pub(super) fn play(set: &PatchSet, wish: Wish, most: usize) -> Vec<Tableau> {
     let choices = [false, true].map(|turns| fitting(set, wish, turns));
     let of_seed = |seed: u64| choices.iter().find_map(|set| of_seed(set, wish, seed));
     let seeds: Vec<u64> = (0..SEEDS).map(|k| wish.seed.wrapping_mul(SEEDS).wrapping_add(k)).collect();
-    let mut found: Vec<(f32, Tableau)> = seeds.into_par_iter().filter_map(of_seed).collect();
+    let (first, others) = seeds.split_at(FIRST_SEEDS);
+    let all = |seeds: &[u64]| -> Vec<(f32, Tableau)> { seeds.par_iter().filter_map(|&seed| of_seed(seed)).collect() };
+    let mut found = all(first);
+    if !found.is_empty() {
+        found.extend(all(others));
+    }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     found.into_iter().take(most).map(|(_, tableau)| tableau).collect()
 }
@@ -82,13 +89,14 @@ fn of_seed(set: &PatchSet, wish: Wish, seed: u64) -> Option<(f32, Tableau)> {
     let periodic = Periodic { t: true, ..Periodic::default() };
     let scene = Scene { periodic, ..Scene::new(region, wish.period, wish.people) };
     let shares = if wish.people > 1 { &TOGETHER[..] } else { &[0.0] };
-    let crowd = shares.iter().find_map(|&interaction| {
+    let at = |&interaction: &f32| {
         let scene = Scene { interaction, ..scene.clone() };
         let options = Options { seed, time_secs: SECS, ..Options::default() };
         let outcome = tile(&scene, set, &options, &mut |_| true).ok()?;
         let fits = outcome.status == Status::Perfect && outcome.crowd.characters.len() == wish.people;
         fits.then_some(outcome.crowd)
-    })?;
+    };
+    let crowd = shares.iter().map_while(at).last()?;
     let share = together(&crowd);
     let crowd = refine_crowd(&undressed(crowd));
     let tableau = Tableau::new(crowd.characters.iter().map(|c| clip(c, wish.period)).collect(), vec![]);
