@@ -103,7 +103,7 @@ fn a_standing_person_in_the_way_is_found() {
     let stand = |p: &mut CrowdPatch| {
         let path = &p.walkers[0].path;
         let position = path.position(f64::from(path.span().0 + path.span().1) * 0.5);
-        p.frame.people.push(Standing { name: "stand".into(), position, heading: 0.0, radius: 0.3 });
+        p.frame.people.push(Standing { name: "stand".into(), position, heading: 0.0, radius: 0.3, role: None });
     };
     assert_found(&faults(stand), "walker 0: expected it 0.25 m off objects");
 }

@@ -59,6 +59,13 @@ impl WorldScene {
         })
     }
 
+    /// The same scene, in which people who stay do something that the people of `patches` do: groups play patches of several people,
+    /// who is alone those of one who stays in place. Kinds with a word of the gathering's name as a label are meant; where there are
+    /// none any will do. Returns the scene, and in words for whom nothing was found.
+    fn with_acts(&self, py: Python<'_>, patches: &PatchSet) -> PyResult<(Self, Vec<String>)> {
+        run(py, || Ok(self.0.clone().with_acts(&patches.0))).map(|(scene, notes)| (Self(scene), notes))
+    }
+
     /// What it is called.
     #[getter]
     fn name(&self) -> &str {
@@ -319,6 +326,19 @@ impl World {
         Ok((PyArray1::from_vec(py, ids), stack(py, joints, JOINT_COUNT, 3)?))
     }
 
+    /// Whether people who stay do something.
+    #[getter]
+    fn has_acts(&self) -> bool {
+        self.0.tables().acts.is_some()
+    }
+
+    /// Full bodies of all who stay and do something in the patches that reach into a disc (x, z, radius), at a time: (n,) identities,
+    /// (n, joints, 3) joints in metres from the disc's middle.
+    fn acting_near<'py>(&self, py: Python<'py>, secs: f64, near: (f64, f64, f64)) -> PyResult<Bodies<'py>> {
+        let (ids, joints) = py.detach(|| self.acting(secs, near));
+        Ok((PyArray1::from_vec(py, ids), stack(py, joints, JOINT_COUNT, 3)?))
+    }
+
     fn __len__(&self) -> usize {
         self.0.instances()
     }
@@ -333,16 +353,35 @@ impl World {
     fn joints(&self, secs: f64, (x, z, radius): (f64, f64, f64)) -> (Vec<u64>, Vec<f32>) {
         let world = &*self.0;
         let (mut ids, mut joints, mut globals) = (Vec::new(), Vec::new(), Vec::new());
-        let Some(gait) = &world.tables().gait else { return (ids, joints) };
+        if world.tables().gait.is_none() {
+            return (ids, joints);
+        }
         let (middle, moment) = (DVec2::new(x, z), world.moment(secs));
         let mut pose = [Quat::IDENTITY; JOINT_COUNT];
         for spot in world.nearby().within(middle, radius) {
             let instance = spot.instance as usize;
             let place = (world.place(instance) + spot.shift - middle).as_vec2();
             ids.extend(world.people_of(instance, self.copy(spot.shift), &moment).map(|person| person.hash(0)));
-            for body in world.bodies(spot, secs) {
-                let root = body.pose(&gait.table, &mut pose);
+            for (who, body) in world.walkers_of(instance, &moment).zip(world.bodies(spot, secs)) {
+                let root = world.walker_body(spot, who, &body, secs, &mut pose);
                 canonical().globals(root + Vec3::new(place.x, 0.0, place.y), &pose, &mut globals);
+                joints.extend(globals.iter().flat_map(|(position, _)| position.to_array()));
+            }
+        }
+        (ids, joints)
+    }
+
+    fn acting(&self, secs: f64, (x, z, radius): (f64, f64, f64)) -> (Vec<u64>, Vec<f32>) {
+        let (world, middle) = (&*self.0, DVec2::new(x, z));
+        let (mut ids, mut joints, mut globals) = (Vec::new(), Vec::new(), Vec::new());
+        let mut pose = [Quat::IDENTITY; JOINT_COUNT];
+        for spot in world.nearby().within(middle, radius) {
+            let instance = spot.instance as usize;
+            let place = (world.place(instance) + spot.shift - middle).as_vec2();
+            for index in 0..world.kind(world.kind_of(instance)).stayers().len() {
+                let Some(hips) = world.stayer_body(spot, index, secs, &mut pose) else { continue };
+                ids.push(world.stayer(instance, index, self.copy(spot.shift)).hash(0));
+                canonical().globals(hips + Vec3::new(place.x, 0.0, place.y), &pose, &mut globals);
                 joints.extend(globals.iter().flat_map(|(position, _)| position.to_array()));
             }
         }

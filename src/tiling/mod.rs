@@ -43,6 +43,7 @@ mod torsos;
 mod tracks;
 mod tryout;
 mod view;
+mod visit;
 mod wang;
 
 #[cfg(test)]
@@ -59,3 +60,4 @@ pub use prefer::{Field, Form, Preference, Term};
 pub use scene::{KindFilter, Periodic, Placed, Scene, Sink, Source, Team, Wang};
 pub use session::{Review, Session, review};
 pub use study::study;
+pub(crate) use visit::{Crossing, Place, Visit, playable, visits};

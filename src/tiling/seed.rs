@@ -52,6 +52,9 @@ pub(super) fn stand_beside(draft: &mut Draft, taste: Taste, rng: &mut ChaCha8Rng
 /// Lets somebody who walks about alone stand beside somebody else instead, so that there is room for others.
 pub(super) fn settle(draft: &mut Draft, taste: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
     let tracks = draft.base;
+    if tracks.tracks.is_empty() {
+        return None;
+    }
     let track = rng.random_range(0..tracks.tracks.len());
     let pieces = &tracks.tracks[track];
     let here = tracks.piece(pieces[0]).entry().position;

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, Vec2};
 
-use super::{CrowdPatch, Identities, Lattice, Limits, Pattern, Plan, Shape, Template};
+use super::rich::moved;
+use super::{CrowdPatch, Identities, Lattice, Limits, Pattern, Plan, Role, Shape, Standing, Template, Walker};
 use crate::stage::World;
-use crate::stage::world::{Lane, Tables, TemplateInfo, UNITS_PER_METRE, WalkLimits, WorldInfo, stay_slots};
+use crate::stage::world::{Lane, NO_ACT, Tables, TemplateInfo, UNITS_PER_METRE, WalkLimits, WorldInfo, stay_slots};
 use crate::{Error, Result};
 
 /// Slots of a page: fewer cost memory for control points around their ends, more for lanes that are not there all the time.
@@ -39,6 +40,7 @@ pub fn bake(
         bakery.add_kind(index, patch, *template)?;
     }
     bakery.add_pages(kinds);
+    bakery.end_acts();
     bakery.end_rows();
     bakery.add_instances(placements)?;
     World::new(bakery.tables)
@@ -85,6 +87,8 @@ struct Bakery {
     /// Index of every pattern by its bytes.
     patterns: BTreeMap<Vec<u8>, i32>,
     names: BTreeMap<String, u32>,
+    /// Index of every clip by where it is in memory: tableaux share theirs.
+    acts: BTreeMap<Vec<u32>, u32>,
     /// Middle of every kind: the origin of its frame in the world.
     middles: Vec<DVec2>,
 }
@@ -108,7 +112,7 @@ impl Bakery {
             return Err(Error::invalid("world", format!("patch {bad}"), problem));
         }
         let tables = Tables { info, identities, ..Tables::default() };
-        Ok(Self { tables, patterns: BTreeMap::new(), names: BTreeMap::new(), middles })
+        Ok(Self { tables, patterns: BTreeMap::new(), names: BTreeMap::new(), acts: BTreeMap::new(), middles })
     }
 
     fn add_kind(&mut self, index: usize, patch: &CrowdPatch, template: u32) -> Result<()> {
@@ -134,6 +138,7 @@ impl Bakery {
                 return Err(Error::invalid("world", place(), "expected at most 65535 walkers"));
             }
             self.tables.walkers.push(output as u32 | walker.laps << 16);
+            self.add_visit(patch, walker, self.middles[index]);
         }
         for object in &frame.objects {
             self.add_object(&object.name, &object.shape, origin);
@@ -143,6 +148,7 @@ impl Bakery {
             let at = person.position - origin;
             self.tables.stayer_names.push(name);
             self.tables.stayers.extend([at.x, at.y, person.heading, person.radius]);
+            self.add_role(person);
         }
         let t = &mut self.tables;
         let ends = [t.edges.len(), t.walkers.len(), t.object_names.len(), t.stayer_names.len()].map(|n| n as u32);
@@ -162,6 +168,39 @@ impl Bakery {
         t.object_points.extend(points.iter().flat_map(|&p| (p - origin).to_array()));
         t.object_ends.push((t.object_points.len() / 2) as u32);
         t.object_radii.push(radius);
+    }
+
+    /// What somebody does who comes in and goes out.
+    fn add_visit(&mut self, patch: &CrowdPatch, walker: &Walker, middle: DVec2) {
+        if walker.role.is_none() && self.tables.acts.is_none() {
+            return;
+        }
+        let everybody = self.tables.walkers.len();
+        let acts = self.tables.acts.get_or_insert_default();
+        acts.walkers.resize(everybody - 1, NO_ACT);
+        acts.walker_times.resize(3 * (everybody - 1), 0.0);
+        let act = walker.role.as_ref().map_or(NO_ACT, |role| acts.add(&moved(&role.act, -middle)));
+        let (enter, leave) = patch.presence(walker);
+        acts.walkers.push(act);
+        let begin = walker.role.as_ref().map_or(0.0, |role| -role.lead);
+        acts.walker_times.extend([begin, enter as f32, leave as f32]);
+    }
+
+    /// What somebody does who stays.
+    fn add_role(&mut self, person: &Standing) {
+        if person.role.is_none() && self.tables.acts.is_none() {
+            return;
+        }
+        let everybody = self.tables.stayer_names.len();
+        let acts = self.tables.acts.get_or_insert_default();
+        // Those before had none.
+        acts.stayers.resize(everybody - 1, NO_ACT);
+        acts.stayer_leads.resize(everybody - 1, 0.0);
+        let known = &mut self.acts;
+        let index = |role: &Role| *known.entry(role.act.bits()).or_insert_with(|| acts.add(&role.act));
+        let act = person.role.as_ref().map_or(NO_ACT, index);
+        acts.stayers.push(act);
+        acts.stayer_leads.push(person.role.as_ref().map_or(0.0, |role| role.lead));
     }
 
     fn name(&mut self, name: &str) -> u32 {
@@ -215,6 +254,17 @@ impl Bakery {
                     }
                 }
             }
+        }
+    }
+
+    /// Those after the last who does something have nothing to do.
+    fn end_acts(&mut self) {
+        let (stayers, walkers) = (self.tables.stayer_names.len(), self.tables.walkers.len());
+        if let Some(acts) = &mut self.tables.acts {
+            acts.stayers.resize(stayers, NO_ACT);
+            acts.stayer_leads.resize(stayers, 0.0);
+            acts.walkers.resize(walkers, NO_ACT);
+            acts.walker_times.resize(3 * walkers, 0.0);
         }
     }
 

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use super::shape::Obstacle;
 use super::spacing;
 use super::valid::check_outline;
-use super::{Limits, Pattern, PatternType, Port, Shape};
+use super::{Limits, Pattern, PatternType, Port, Role, Shape};
 use crate::Result;
 
 /// Something that never moves.
@@ -32,6 +32,9 @@ pub struct Standing {
     pub heading: f32,
     /// Radius of the disc that its motion stays in, metres.
     pub radius: f32,
+    /// Its motion, if it is known.
+    #[serde(default)]
+    pub role: Option<Role>,
 }
 
 /// Outline, patterns and objects of a patch.

@@ -36,7 +36,7 @@ impl FramePatch {
             Shape::disc(at, radius)
         };
         let Some(Shape::Disc { centre, .. }) = self.find_room(make, limits, rng) else { return false };
-        self.people.push(Standing { name: name.into(), position: centre, heading: heading.get(), radius });
+        self.people.push(Standing { name: name.into(), position: centre, heading: heading.get(), radius, role: None });
         true
     }
 

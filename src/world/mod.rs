@@ -33,6 +33,7 @@
 //! | `goal.rs`, `goal_solve.rs`, `journey.rs` | walkers who go somewhere; who gets from one place to another soonest |
 //! | `periods.rs`, `day.rs` | several periods in one world; density that follows the time of day |
 //! | `spectator/` | people step aside for somebody who walks among them |
+//! | `rich/` | what people do who do something else than walk, out of a patch set |
 //! | `stream.rs` | an endless world around a camera |
 //! | `scenes.rs`, `measure.rs` | the street and the city of the paper; how long patches take |
 
@@ -58,6 +59,7 @@ mod path;
 mod pattern;
 mod periods;
 mod plan;
+mod rich;
 mod route;
 mod scene;
 pub mod scenes;
@@ -88,6 +90,7 @@ pub use patch::{CrowdPatch, Port, Walker};
 pub use path::Path;
 pub use pattern::{Crossing, Pattern, balanced};
 pub use plan::Plan;
+pub use rich::{Meeting, Member, Role, Tableau};
 pub use scene::{Layout, WorldScene};
 pub use shape::Shape;
 pub use shard::Shard;

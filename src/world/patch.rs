@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::{FramePatch, Path};
+use super::{FramePatch, Path, Role};
 
 /// A crossing of a patch: an input or an output, by context.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
@@ -24,6 +24,9 @@ pub struct Walker {
     pub laps: u32,
     /// Its way. Time 0 is the begin of the period it came in; it reaches a body's width beyond both borders.
     pub path: Path,
+    /// What it does on it, if it does not just walk: a clip in the patch's frame.
+    #[serde(default)]
+    pub role: Option<Role>,
 }
 
 /// A frame-patch filled with walkers.

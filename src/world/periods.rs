@@ -84,7 +84,7 @@ pub(super) fn unroll(once: CrowdPatch, full: &FramePatch, times: u32) -> CrowdPa
         let output = Port { index: walker.output.index + (left % times) as usize * count, ..walker.output };
         let input = Port { edge, index: index + repetition as usize * short.patterns[edge].inputs.len() };
         let path = Path { first: walker.path.first + repetition as i32 * ticks, ..walker.path.clone() };
-        Walker { input, output, laps: left / times, path }
+        Walker { input, output, laps: left / times, path, role: None }
     };
     let edges = 0..short.patterns.len();
     let of =

@@ -236,6 +236,11 @@ impl Plan {
         let bare = if times == 1 { full.clone() } else { full.once(times) };
         let place =
             connections.iter().fold(self.cell_key(column, row), |hash, c| mix(mix(hash, c.0 as u64), c.1 as u64));
+        // Where nobody finds a way to meet, or some are on their way to somewhere, people walk through.
+        let meeting = self.template(column, row).meeting.as_ref().filter(|_| times == 1 && connections.is_empty());
+        if let Some(patch) = meeting.and_then(|m| m.patch(&bare, &Limits::default(), place)) {
+            return Ok(patch);
+        }
         let cell = || format!("column {column}, row {row}");
         for given in if connections.is_empty() { vec![connections] } else { vec![connections, &[]] } {
             for attempt in 0..ATTEMPTS {
@@ -254,7 +259,7 @@ impl Plan {
     /// Another version of `patch` (of the cell at a column and row) for the `copy` of the map: objects and ways differ,
     /// patterns and connections do not. A function of the plan and the place. `patch` itself if no version is found soon.
     pub fn version(&self, patch: &CrowdPatch, column: usize, row: usize, copy: [i64; 2]) -> CrowdPatch {
-        if copy == [0, 0] || patch.walkers.is_empty() {
+        if copy == [0, 0] || patch.walkers.iter().all(|w| w.role.is_some()) {
             return patch.clone();
         }
         let place = [column as u64, row as u64, copy[0] as u64, copy[1] as u64].into_iter().fold(!self.seed, mix);

@@ -13,7 +13,9 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::{Amount, Area, Built, Coordinates, Furnishing, Gathering, Goal, Plan, Prototype, Site, Spot, Template};
+use super::{
+    Amount, Area, Built, Coordinates, Furnishing, Gathering, Goal, Meeting, Plan, Prototype, Site, Spot, Template,
+};
 use crate::{Error, Result};
 use border::BorderText;
 
@@ -81,6 +83,8 @@ struct TemplateText {
     objects: Vec<Spanned<ObjectText>>,
     #[serde(default)]
     people: Vec<Spanned<PeopleText>>,
+    /// Labels of what people do who come in and meet.
+    meet: Option<Vec<String>>,
     #[serde(default)]
     borders: BTreeMap<String, Spanned<BorderText>>,
 }
@@ -318,6 +322,7 @@ fn template(text: &Spanned<TemplateText>, all: &[Spanned<TemplateText>], bad: &m
     if all.iter().filter(|other| other.get_ref().name.get_ref() == raw.name.get_ref()).count() > 1 {
         bad.add(raw.name.span(), format!("expected one template of a name, found two called {:?}", raw.name.get_ref()));
     }
+    made.meeting = raw.meet.clone().map(|labels| Meeting { labels, ..Meeting::default() });
     for object in &raw.objects {
         let (o, span) = (object.get_ref(), object.span());
         let outline = match (o.disc, o.oblong) {
@@ -336,7 +341,13 @@ fn template(text: &Spanned<TemplateText>, all: &[Spanned<TemplateText>], bad: &m
         let p = people.get_ref();
         if let Some(amount) = amount(p.number, p.density, &p.name, people.span(), bad) {
             let size = (p.group[0], p.group[1]);
-            made.gatherings.push(Gathering { name: p.name.clone(), size, radius: p.radius, amount });
+            made.gatherings.push(Gathering {
+                name: p.name.clone(),
+                size,
+                radius: p.radius,
+                amount,
+                tableaux: Default::default(),
+            });
         }
     }
     for (name, border) in &raw.borders {

@@ -4,12 +4,14 @@
 //! patterns. Objects are counted or by density; patterns depend on which template is on the other side.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::Vec2;
 use rand::RngExt;
+use rand::seq::IndexedRandom;
 use rand_chacha::ChaCha8Rng;
 
-use super::{FramePatch, Limits, PatternType, Shape, Standing};
+use super::{FramePatch, Limits, Meeting, PatternType, Shape, Standing, Tableau};
 
 /// How many of something.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -94,6 +96,9 @@ pub struct Gathering {
     pub radius: f32,
     /// How many such groups.
     pub amount: Amount,
+    /// What they do, if that is known; else nobody moves.
+    #[serde(default)]
+    pub tableaux: Arc<Vec<Tableau>>,
 }
 
 /// What patches of a kind contain.
@@ -111,6 +116,9 @@ pub struct Template {
     /// Endogenous people.
     #[serde(default)]
     pub gatherings: Vec<Gathering>,
+    /// What people do who come in and meet, if they do.
+    #[serde(default)]
+    pub meeting: Option<Meeting>,
     /// Pattern type of the border to a patch of another (or the same) template, by its name, seen from this side. Where
     /// both templates name each other the one that comes first counts; where neither does nobody crosses.
     #[serde(default)]
@@ -125,6 +133,7 @@ impl Template {
             ground: ground.into(),
             furnishings: Vec::new(),
             gatherings: Vec::new(),
+            meeting: None,
             borders: BTreeMap::new(),
         }
     }
@@ -137,7 +146,7 @@ impl Template {
 
     /// With groups of people.
     pub fn gathered(mut self, name: &str, size: (usize, usize), amount: Amount) -> Self {
-        self.gatherings.push(Gathering { name: name.into(), size, radius: 0.3, amount });
+        self.gatherings.push(Gathering { name: name.into(), size, radius: 0.3, amount, tableaux: Arc::default() });
         self
     }
 
@@ -157,6 +166,9 @@ impl Template {
         for gathering in &self.gatherings {
             let problem = gathering.amount.problem().or_else(|| gathering.problem());
             found.extend(problem.map(|problem| format!("gathering {:?}: {problem}", gathering.name)));
+        }
+        if self.meeting.is_some() && !(self.furnishings.is_empty() && self.gatherings.is_empty()) {
+            found.push("expected a place to meet without objects and people who stay".into());
         }
         for (name, kind) in &self.borders {
             let flows = [kind.inputs, kind.outputs];
@@ -202,6 +214,11 @@ impl Gathering {
     /// Adds one group: people on a circle who look at its middle.
     fn join(&self, frame: &mut FramePatch, limits: &Limits, rng: &mut ChaCha8Rng) {
         let size = rng.random_range(self.size.0..=self.size.1.max(self.size.0));
+        let fitting: Vec<&Tableau> = self.tableaux.iter().filter(|t| t.members.len() == size).collect();
+        if let Some(tableau) = fitting.choose(rng) {
+            tableau.join(&self.name, frame, limits, rng);
+            return;
+        }
         if size < 2 {
             if size == 1 {
                 frame.scatter_person(&self.name, self.radius, limits, rng);
@@ -217,7 +234,7 @@ impl Gathering {
             let away = Vec2::from_angle((turn + i as f32 / size as f32) * std::f32::consts::TAU);
             let position = centre + away * circle;
             let heading = (-away.x).atan2(-away.y);
-            frame.people.push(Standing { name: self.name.clone(), position, heading, radius: self.radius });
+            frame.people.push(Standing { name: self.name.clone(), position, heading, radius: self.radius, role: None });
         }
     }
 }

@@ -34,7 +34,7 @@ def make_world(
     plot: Annotated[Path | None, typer.Option(help="Draw it from above: flows and densities.")] = None,
     patch: Annotated[Path | None, typer.Option(help="Draw its busiest patch, its patterns unrolled over time.")] = None,
     patches: Annotated[
-        Path | None, typer.Option(help="Walk as the people of this patch set (.patches); generated ones if not given.")
+        Path | None, typer.Option(help="Walk and act as the people of this patch set (.patches); generated ones if not given.")
     ] = None,
     bodies: Annotated[bool, typer.Option(help="Give everybody a full body; without, the file is smaller.")] = True,
     shards: Annotated[
@@ -51,14 +51,18 @@ def make_world(
     expect_picture(plot, patch)
     begin = time.perf_counter()
     try:
-        made, notes = build(WorldScene.load(scene).replace(seed=seed), shards, crew(shards, workers, dask))
+        wanted = WorldScene.load(scene).replace(seed=seed)
+        walks = (PatchSet.load(patches) if patches else worlds.sample_walks()) if bodies else None
+        wanted, missing = wanted.with_acts(walks) if walks else (wanted, [])
+        made, notes = build(wanted, shards, crew(shards, workers, dask))
+        notes = missing + notes
     except CrowdquiltError as error:
         # The core speaks of "map" and "patch"; the user knows them by their file.
         message = str(error)
         raise CrowdquiltError(message if message.startswith(str(scene)) else f"{scene}: {message}") from None
     secs = time.perf_counter() - begin
-    if bodies:
-        made = made.with_bodies(PatchSet.load(patches) if patches else worlds.sample_walks())
+    if walks:
+        made = made.with_bodies(walks)
     worlds.save(made, out)
     draw(made, plot, patch)
     found = worlds.facts(made) | {"seconds": round(secs, 3), "notes": notes}

@@ -35,6 +35,8 @@ pub fn check_world(world: &World) -> Report {
     rows.extend(played.limits());
     rows.extend(played.hand_overs());
     rows.extend(super::feet::rows(world));
+    rows.extend(super::acts::rows(world));
+    rows.extend(super::acts::meetings(world));
     Report { rows }
 }
 
@@ -49,6 +51,8 @@ struct Way {
     curve: Curve,
     /// First chord of its stay, and the chord after the last.
     stay: (i64, i64),
+    /// Whether it does something else than walk.
+    acts: bool,
 }
 
 /// What a world plays.
@@ -66,7 +70,9 @@ impl<'a> Played<'a> {
         let ways = (0..world.kinds())
             .map(|kind| {
                 let walkers = 0..world.kind(kind).walkers();
-                walkers.filter_map(|w| way(knots.remove(&(kind, w))?, step)).collect()
+                walkers
+                    .filter_map(|w| way(knots.remove(&(kind, w))?, step, world.walker_act(kind, w).is_some()))
+                    .collect()
             })
             .collect();
         Self { world, ways, step }
@@ -113,7 +119,7 @@ impl<'a> Played<'a> {
                 while own < way.stay.1 {
                     let (from, to, sag) = way.curve.chord(own, self.step / CHORDS as f64);
                     let [from, to] = [from, to].map(|p| turn.rotate(p) + place);
-                    bodies.push(Body { from, to, sag, tile: instance });
+                    bodies.push(Body { from, to, sag, tile: instance, acts: way.acts });
                     own += chords;
                 }
             }
@@ -285,13 +291,13 @@ fn knots(world: &World) -> HashMap<(usize, usize), BTreeMap<i64, DVec2>> {
     found
 }
 
-fn way(knots: BTreeMap<i64, DVec2>, step: f64) -> Option<Way> {
+fn way(knots: BTreeMap<i64, DVec2>, step: f64, acts: bool) -> Option<Way> {
     let first = *knots.keys().next()?;
     let points: Vec<Vec2> = knots.values().map(|p| p.as_vec2()).collect();
     let path = Path { step: step as f32, first: first as i32, points };
     let curve = Curve::new(&path)?;
     let stay = (curve.begin, curve.end());
-    Some(Way { path, curve, stay })
+    Some(Way { path, curve, stay, acts })
 }
 
 /// Objects and people of a kind that nobody walks into, with words for each.

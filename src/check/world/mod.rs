@@ -5,6 +5,7 @@
 //! may leave a chord by (acceleration x time^2 / 8, the acceleration of a cubic spline being greatest at its knots)
 //! counts against it.
 
+mod acts;
 mod baked;
 mod curve;
 mod distance;

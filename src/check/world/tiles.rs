@@ -59,6 +59,8 @@ pub(super) struct Body {
     pub sag: f64,
     /// The patch it is in.
     pub tile: usize,
+    /// Whether it does something there, maybe with others: who meets may touch.
+    pub acts: bool,
 }
 
 /// Checks the patches of a world over a whole period, everybody against everybody near. With `torus` the world repeats
@@ -106,7 +108,7 @@ fn bodies(tiles: &[Placed], curves: &[Vec<Curve>], chord: i64, chords: i64, secs
             let mut own = first + (chord - first).rem_euclid(chords);
             while own < last.min(curve.end()) {
                 let (from, to, sag) = curve.chord(own, secs);
-                bodies.push(Body { from: from + origin, to: to + origin, sag, tile });
+                bodies.push(Body { from: from + origin, to: to + origin, sag, tile, acts: false });
                 own += chords;
             }
         }
@@ -138,6 +140,9 @@ pub(super) fn closest(bodies: &[Body], torus: Option<Vec2>, limits: &Limits) -> 
                 next = (next.0.rem_euclid(n.x as i64), next.1.rem_euclid(n.y as i64));
             }
             for &j in grid.get(&next).into_iter().flatten().filter(|&&j| j > i) {
+                if a.acts && bodies[j].acts && a.tile == bodies[j].tile {
+                    continue;
+                }
                 let distance = distance(a, &bodies[j], torus);
                 if distance < least.0 {
                     least = (distance, a.tile);

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use glam::{Quat, Vec2, Vec3};
 
+use super::acts::Acts;
 use super::gait::{Gait, GaitTable, Swing};
 use super::identity::{Identities, Place, Round};
 use super::{Tables, World, WorldInfo};
@@ -25,6 +26,9 @@ struct Header {
     info: WorldInfo,
     #[serde(default)]
     gait_phases: Option<usize>,
+    /// Whether people who stay have bodies.
+    #[serde(default)]
+    has_acts: bool,
     /// What the rotations turn, for readers that do not know it.
     #[serde(default, skip_deserializing)]
     skeleton: Option<Skeleton>,
@@ -72,9 +76,13 @@ impl World {
         if let Some(gait) = &t.gait {
             write_gait(gait, &mut writer);
         }
-        let skeleton = t.gait.as_ref().map(|_| canonical().clone());
+        if let Some(acts) = &t.acts {
+            acts.write(&mut writer);
+        }
+        let has_acts = t.acts.is_some();
+        let skeleton = (has_acts || t.gait.is_some()).then(|| canonical().clone());
         let gait_phases = t.gait.as_ref().map(|gait| gait.table.phases);
-        writer.finish(MAGIC, VERSION, &Header { info: t.info.clone(), gait_phases, skeleton })
+        writer.finish(MAGIC, VERSION, &Header { info: t.info.clone(), gait_phases, has_acts, skeleton })
     }
 
     /// A world from the bytes of a world file.
@@ -83,10 +91,11 @@ impl World {
     /// Names the place: magic, version, header field, array.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let reader = Reader::open(bytes, MAGIC, VERSION..=VERSION)?;
-        let Header { info, gait_phases, .. } = reader.header()?;
+        let Header { info, gait_phases, has_acts, .. } = reader.header()?;
         Self::new(Tables {
             info,
             gait: gait_phases.map(|phases| read_gait(phases, &reader)).transpose()?,
+            acts: has_acts.then(|| Acts::read(&reader)).transpose()?,
             pattern_ends: reader.array("pattern_ends")?,
             pattern_lengths: reader.array("pattern_lengths")?,
             crossings: reader.array("crossings")?,

@@ -127,6 +127,16 @@ impl<'a> Kind<'a> {
         })
     }
 
+    /// Number of walkers of the kinds before.
+    pub(super) fn first_walker(&self) -> usize {
+        self.run(1).start
+    }
+
+    /// Number of those who stay in the kinds before.
+    pub(super) fn first_stayer(&self) -> usize {
+        self.run(3).start
+    }
+
     /// When every walker comes in and goes out, seconds after the begin of the period it comes in.
     pub fn presences(&self, period: f32) -> Vec<(f64, f64)> {
         let patterns = self.patterns();

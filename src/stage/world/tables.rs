@@ -4,6 +4,7 @@
 
 use glam::DVec2;
 
+use super::acts::Acts;
 use super::gait::Gait;
 use super::identity::Identities;
 use super::kind::Kind;
@@ -125,6 +126,8 @@ pub struct Tables {
     pub identities: Identities,
     /// Bodies, if there are any.
     pub gait: Option<Gait>,
+    /// What people do who do something else than walk, if that is known.
+    pub acts: Option<Acts>,
 }
 
 /// Corners are no further from the middle of their patch, metres.
@@ -177,8 +180,8 @@ impl Tables {
             self.instance_turns.len() + self.instance_phases.len(),
         ];
         let (crossings, cycles) = self.identities.parts();
-        let gait = self.gait.as_ref().map_or(0, Gait::bytes);
-        4 * four.iter().sum::<usize>() + 2 * self.rows.len() + 16 * crossings.len() + 12 * cycles.len() + gait
+        let bodies = self.gait.as_ref().map_or(0, Gait::bytes) + self.acts.as_ref().map_or(0, Acts::bytes);
+        4 * four.iter().sum::<usize>() + 2 * self.rows.len() + 16 * crossings.len() + 12 * cycles.len() + bodies
     }
 
     /// Whether the numbers make a world.
@@ -191,7 +194,8 @@ impl Tables {
         self.check_kinds()?;
         (0..self.kinds()).try_for_each(|kind| self.kind(kind).validate(self, kind))?;
         self.check_lanes()?;
-        self.check_instances()
+        self.check_instances()?;
+        self.acts.as_ref().map_or(Ok(()), |acts| acts.validate(self))
     }
 
     fn check_info(&self) -> Result<()> {

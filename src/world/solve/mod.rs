@@ -131,7 +131,7 @@ fn walkers(frame: &FramePatch, planner: &Planner) -> Vec<Walker> {
         let track = &planner.tracks[input];
         let points = track.points.iter().map(|p| Vec2::new(p.x as f32, p.y as f32)).collect();
         let path = Path { step: planner.step as f32, first: track.first, points };
-        Walker { input: port, output: outputs[output], laps: planner.pairing.laps(input, output), path }
+        Walker { input: port, output: outputs[output], laps: planner.pairing.laps(input, output), path, role: None }
     };
     frame.inputs().enumerate().map(walker).collect()
 }

@@ -25,7 +25,8 @@ import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 import { buildMannequin, restPositions } from "../draw/mannequin";
 import { lookOf, looksOf, PART_COUNT, Part } from "../draw/palette";
 import { CLOTHES, skinning } from "../draw/shaders";
-import type { Gait } from "./model";
+import { Actor } from "./acts";
+import type { Acts, Gait } from "./model";
 import { Poser } from "./pose";
 import type { Walker } from "./sample";
 
@@ -42,9 +43,13 @@ export class Figures {
   private readonly looks: Uint8Array | null = null;
   private readonly textures: DataTexture[] = [];
   private readonly poser: Poser | null = null;
+  private readonly actor: Actor | null = null;
   private readonly geometry = new InstancedBufferGeometry();
 
-  constructor(private readonly gait: Gait | null) {
+  constructor(
+    private readonly gait: Gait | null,
+    acts: Acts | null,
+  ) {
     this.far = new InstancedMesh(figure(), new MeshStandardMaterial({ roughness: 0.85 }), MOST_FAR);
     this.far.frustumCulled = false;
     this.far.castShadow = true;
@@ -55,6 +60,7 @@ export class Figures {
     this.turns = new Float32Array(texels);
     this.looks = new Uint8Array(MOST_NEAR * PART_COUNT * 4);
     this.poser = new Poser(gait);
+    this.actor = acts ? new Actor(acts) : null;
     this.near = this.body(gait, rows);
   }
 
@@ -84,7 +90,9 @@ export class Figures {
 
   private dress(slot: number, walker: Walker): void {
     if (!this.gait || !this.places || !this.turns || !this.looks) return;
-    this.poser?.pose(walker, this.places, this.turns, slot * this.gait.joints.length * 4);
+    const at = slot * this.gait.joints.length * 4;
+    if (walker.act?.share !== 1) this.poser?.pose(walker, this.places, this.turns, at);
+    if (walker.act) this.actor?.pose(walker.act, this.places, this.turns, at);
     this.looks.set(looksOf(walker.id % 4096), slot * PART_COUNT * 4);
   }
 

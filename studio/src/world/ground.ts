@@ -15,6 +15,7 @@ import {
   Vector2,
 } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
+import { acts } from "./acts";
 import type { Kind, Place, Thing, World } from "./model";
 
 const GROUNDS: Record<string, string> = {
@@ -37,7 +38,9 @@ export function patchMesh(world: World, place: Place): Group {
   const parts = [floor(kind, color)];
   if (ground === "roof" || ground === "floor") parts.push(...house(kind, place));
   for (const thing of kind.things) parts.push(...standing(thing));
-  for (const { x, z, heading } of kind.stayers) {
+  for (const [index, { x, z, heading }] of kind.stayers.entries()) {
+    // Who does something is drawn as those who walk are.
+    if (acts(world, place, index) !== null) continue;
     const person = new CylinderGeometry(0.16, 0.2, 1.45, 8).translate(0, 0.72, 0);
     const head = new SphereGeometry(0.125, 8, 6).translate(0, 1.6, 0.03);
     for (const part of [person, head]) parts.push(painted(part.rotateY(heading).translate(x, 0, z), STAYER));
@@ -109,7 +112,7 @@ function standing(thing: Thing): BufferGeometry[] {
   const column = (low: number, high: number, from: number, to: number, color: string) =>
     painted(new CylinderGeometry(high, low, to - from, 12).translate(x, (from + to) / 2, z), color);
   if (thing.radius === 0) {
-    const bench = thing.name === "bench";
+    const bench = thing.name === "bench" || thing.name === "seat";
     return [painted(raised(outline(thing.points), bench ? 0.45 : 2.1), bench ? "#94714f" : "#b5654a")];
   }
   switch (thing.name) {

@@ -32,6 +32,25 @@ export interface Gait {
   tracks: Uint32Array;
 }
 
+/** Full-body clips, one after the other, and whose they are. */
+export interface Acts {
+  joints: Joint[];
+  /** End of every clip, in frames of all clips. */
+  ends: Uint32Array;
+  /** Seconds from frame to frame of every clip. */
+  steps: Float32Array;
+  /** x, y, z of the hips at every frame. */
+  roots: Float32Array;
+  /** x, y, z, w of every joint at every frame. */
+  rotations: Int16Array;
+  /** The clip of everybody who stays, or none; and by how many seconds it is ahead. */
+  stayers: Uint32Array;
+  leads: Float32Array;
+  /** The clip of every walker of every kind, or none; when it begins, and when the walker comes in and goes out. */
+  walkers: Uint32Array;
+  times: Float32Array;
+}
+
 export interface Thing {
   name: string;
   /** x, z pairs: the corners of a polygon, or the middle of a disc. */
@@ -53,6 +72,8 @@ export interface Kind {
   outline: Float32Array;
   things: Thing[];
   stayers: Stayer[];
+  /** Index of the first of them among those of all kinds. */
+  firstStayer: number;
   /** Index of its first walker among those of all kinds. */
   firstWalker: number;
   walkers: number;
@@ -97,4 +118,5 @@ export interface World {
   stays: Int32Array;
   identity: { cycle: Uint32Array; laps: Int32Array; copies: Int32Array; people: Uint32Array; around: Int32Array };
   gait: Gait | null;
+  acts: Acts | null;
 }

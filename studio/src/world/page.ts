@@ -3,6 +3,7 @@
 import { Color, DirectionalLight, Fog, type Group, HemisphereLight, Scene, type WebGLRenderer } from "three";
 import { discard } from "../draw/discard";
 import { button, headed, pairs } from "../panels/dom";
+import { actors } from "./acts";
 import { Figures } from "./figures";
 import { beyond, patchMesh } from "./ground";
 import type { Place, World } from "./model";
@@ -40,7 +41,7 @@ export class WorldPage {
     page: HTMLElement,
   ) {
     this.sampler = new Sampler(world);
-    this.figures = new Figures(world.gait);
+    this.figures = new Figures(world.gait, world.acts);
     this.walk = new Walk(renderer.domElement, () => {});
     this.scene.background = new Color(SKY);
     this.scene.fog = new Fog(SKY, SIGHT * 0.45, SIGHT * 0.98);
@@ -66,7 +67,10 @@ export class WorldPage {
     const spots = this.near(camera.position.x, camera.position.z);
     this.build(spots);
     const people: Walker[] = [];
-    for (const { place, shift, copy } of spots) this.sampler.patch(place, this.time, shift, copy, people);
+    for (const { place, shift, copy } of spots) {
+      this.sampler.patch(place, this.time, shift, copy, people);
+      actors(this.world, place, this.time, shift, people);
+    }
     const drawn = this.figures.show(people, camera.position, NEAR);
     this.sun.target.position.set(camera.position.x, 0, camera.position.z);
     this.sun.position.set(camera.position.x - 30, 55, camera.position.z + 24);

@@ -2,6 +2,7 @@
 
 import { Container, count, FileProblem, finite, list, object, text } from "../crowd/container";
 import type { Vec3 } from "../crowd/model";
+import { readActs } from "./acts";
 import {
   type Bone,
   type Gait,
@@ -53,6 +54,7 @@ export function readWorld(bytes: ArrayBuffer): World {
       around: file.array("cycle_copies", "i32"),
     },
     gait: header.gait_phases === null || header.gait_phases === undefined ? null : readGait(file, stays, crossings),
+    acts: header.has_acts === true ? readActs(file, readJoints(file)) : null,
   };
   check(world, crossings);
   if (world.gait?.prints) world.gait.links = linked(world);
@@ -107,6 +109,7 @@ function readKinds(file: Container, names: readonly string[]): Kind[] {
       outline: corners.subarray(2 * edges[0], 2 * edges[1]),
       things: all(things, thing),
       stayers: all(people, stayer),
+      firstStayer: people[0],
       firstWalker: walkers[0],
       walkers: walkers[1] - walkers[0],
     };
@@ -163,7 +166,7 @@ function readGait(file: Container, stays: Int32Array, crossings: number): Gait {
     tracks[w] = at;
     at += Math.max(stays[2 * w + 1] - stays[2 * w], 0) + 1;
   }
-  const joints = list(object(file.header.skeleton, "header.skeleton").joints, "header.skeleton.joints").map(joint);
+  const joints = readJoints(file);
   const gait: Gait = {
     joints,
     phases: count(file.header.gait_phases, "header.gait_phases"),
@@ -194,6 +197,10 @@ function readGait(file: Container, stays: Int32Array, crossings: number): Gait {
     if (found !== expected) throw new FileProblem(`array ${name}`, `expected ${expected} numbers, found ${found}`);
   }
   return gait;
+}
+
+function readJoints(file: Container): Bone[] {
+  return list(object(file.header.skeleton, "header.skeleton").joints, "header.skeleton.joints").map(joint);
 }
 
 function joint(value: unknown, i: number): Bone {

@@ -1,5 +1,6 @@
 /** Where everybody is at any time: the same sums as src/stage/world/sample.rs, for the patches that are near. */
 
+import { visit } from "./acts";
 import { Feet } from "./feet";
 import type { Foot, Place, World } from "./model";
 import { type At, Walks } from "./walks";
@@ -17,6 +18,20 @@ export interface Walker {
   id: number;
   /** Null if feet are not led to footprints. */
   feet: [Foot, Foot] | null;
+
+  /** Who does something else than walk. */
+  act?: Act | undefined;
+}
+
+/** A clip at some second of it, seen from a place on the ground, and how much it shows through. */
+export interface Act {
+  clip: number;
+  secs: number;
+  repeats: boolean;
+  x: number;
+  z: number;
+  heading: number;
+  share: number;
 }
 
 /** A time slot and the weights of control points in it. */
@@ -90,6 +105,7 @@ export class Sampler {
         phase: body.phase,
         id: this.person(crossing, now.lap - ago, copy),
         feet: this.feet?.of(at, here, speed, body.phase) ?? null,
+        act: visit(world, place, walker, secs, now.lap - ago, shift),
       });
     }
   }
