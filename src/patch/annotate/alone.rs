@@ -1,10 +1,14 @@
 //! Patches of one person: what lies between neighbouring boundaries where nothing happens with others. Captures give many
-//! that are much alike; those are kept that differ most in where and when they lead.
+//! that are much alike; those are kept that differ most in where and when they lead. Rests lead nowhere: of them the
+//! quietest are kept, for where it is dense people stand.
 
 use std::collections::BTreeMap;
 
+use glam::{Vec2, Vec3Swizzles};
+
 use super::{Annotation, holds, labels, seconds};
 use crate::motion::gait::Phase;
+use crate::motion::joint::{HEAD, LEFT_FOOT, LEFT_HAND, RIGHT_FOOT, RIGHT_HAND};
 use crate::motion::take::{TakeFile, TakePatch, TakeRole};
 use crate::motion::{FPS, Motion, plants};
 use crate::patch::boundaries::Cut;
@@ -13,8 +17,10 @@ use crate::patch::episode::Event;
 /// Which patches of one person are kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AloneOptions {
-    /// How many, mirrored copies not counted; default 48.
+    /// How many that are no rests, mirrored copies not counted; default 48.
     pub most: usize,
+    /// How many rests; default 8.
+    pub rests: usize,
     /// Shortest, seconds; default 0.4.
     pub min_seconds: f32,
     /// Longest, seconds; default 5.
@@ -27,7 +33,7 @@ pub struct AloneOptions {
 
 impl Default for AloneOptions {
     fn default() -> Self {
-        Self { most: 48, min_seconds: 0.4, max_seconds: 5.0, turn: 20f32.to_radians(), act: 1.2 }
+        Self { most: 48, rests: 8, min_seconds: 0.4, max_seconds: 5.0, turn: 20f32.to_radians(), act: 1.2 }
     }
 }
 
@@ -48,6 +54,8 @@ pub(super) struct Piece {
     holds: [bool; 2],
     /// Before, between or after events of the person.
     between: bool,
+    /// Of a rest, how far hands, feet and head get from the middle of it, metres; else none.
+    reach: Option<f32>,
     /// Where it leads, seen from the entry: metres aside and ahead, and turn and time scaled to metres.
     leads: [f32; 4],
 }
@@ -87,7 +95,9 @@ pub(super) fn pieces(
             all.extend(maker.pieces());
         }
     }
-    let mut kept = choose(all, options.most);
+    let (rests, ways) = all.into_iter().partition(|p| p.reach.is_some());
+    let mut kept = choose(ways, options.most);
+    kept.extend(quietest(rests, options.rests));
     kept.sort_by_key(|p| (p.take, p.person, p.entry, p.exit));
     kept
 }
@@ -157,6 +167,8 @@ impl Maker<'_> {
         let way = path.at(entry.frame).inverse().then(path.at(exit.frame)).position;
         let time = (exit.frame - entry.frame) as f32 / FPS;
         let acts = self.fastest(entry.frame, exit.frame) > self.options.act;
+        let label = labels::of_motion(self.phase(entry), self.phase(exit), turned.abs() > self.options.turn, acts);
+        let rests = label == labels::REST && entry.group == exit.group;
         Piece {
             take: self.take,
             person: self.person,
@@ -164,19 +176,30 @@ impl Maker<'_> {
             exit,
             holds: [entry, exit].map(|cut| holds(self.file, self.person, cut.frame)),
             between: self.own_events().next().is_some(),
-            label: labels::of_motion(self.phase(entry), self.phase(exit), turned.abs() > self.options.turn, acts),
+            label,
+            reach: rests.then(|| self.reach(entry.frame, exit.frame)),
             leads: [way.x, way.y, 0.5 * turned, 0.5 * time],
         }
     }
 
     /// The fastest of hands, feet and head between two frames, m/s.
     fn fastest(&self, first: usize, last: usize) -> f32 {
-        use crate::motion::joint::{HEAD, LEFT_FOOT, LEFT_HAND, RIGHT_FOOT, RIGHT_HAND};
         let own = self.motion.slice(first, last);
         let of = |joint| plants::speeds(&plants::trajectory(&own, joint), FPS);
-        [HEAD, LEFT_FOOT, LEFT_HAND, RIGHT_FOOT, RIGHT_HAND].into_iter().flat_map(of).fold(0.0, f32::max)
+        ENDS.into_iter().flat_map(of).fold(0.0, f32::max)
+    }
+
+    /// How far hands, feet and head get from the middle of the way between two frames, metres along the ground.
+    fn reach(&self, first: usize, last: usize) -> f32 {
+        let own = self.motion.slice(first, last);
+        let middle = own.path.points.iter().sum::<Vec2>() / own.path.points.len() as f32;
+        let of = |joint| plants::trajectory(&own, joint).into_iter().map(|p| p.xz().distance(middle));
+        ENDS.into_iter().flat_map(of).fold(0.0, f32::max)
     }
 }
+
+/// Where a body ends.
+const ENDS: [usize; 5] = [HEAD, LEFT_FOOT, LEFT_HAND, RIGHT_FOOT, RIGHT_HAND];
 
 /// At most `most` pieces, taken in turn from all pairs of entry and exit group, with and without something in the hands: of
 /// each pair first the most typical, then always the one that differs most from those taken. What people do between two events (dancers keep their arms up)
@@ -193,6 +216,13 @@ fn choose(all: Vec<Piece>, most: usize) -> Vec<Piece> {
     let longest = ordered.iter().map(Vec::len).max().unwrap_or(0);
     let in_turn = (0..longest).flat_map(|rank| ordered.iter().filter_map(move |own| own.get(rank)));
     in_turn.take(most).cloned().collect()
+}
+
+/// The `most` rests that need the least room.
+fn quietest(mut rests: Vec<Piece>, most: usize) -> Vec<Piece> {
+    rests.sort_by(|a, b| a.reach.partial_cmp(&b.reach).expect("rests reach somewhere"));
+    rests.truncate(most);
+    rests
 }
 
 fn by_difference(mut rest: Vec<Piece>) -> Vec<Piece> {

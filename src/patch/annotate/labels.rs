@@ -9,6 +9,9 @@ const STOP_WORDS: [&str; 16] = [
     "two", "degree",
 ];
 
+/// The word for what somebody does who just stands.
+pub(super) const REST: &str = "idle";
+
 /// The word for a kind of event.
 pub(super) fn of_event(kind: EventKind) -> &'static str {
     match kind {
@@ -34,7 +37,7 @@ pub(super) fn of_motion(entry: Phase, exit: Phase, turned: bool, acts: bool) -> 
     match (entry == Phase::Stand, exit == Phase::Stand) {
         (true, true) if acts => "action",
         (true, true) if turned => "turn",
-        (true, true) => "idle",
+        (true, true) => REST,
         (true, false) => "start",
         (false, true) => "stop",
         _ if turned => "turn",
