@@ -26,6 +26,8 @@ const SMOOTHED: [f32; 6] = [0.08, 0.15, 0.22, 0.3, 0.4, 0.55];
 const JOINED_SECS: f64 = 0.8;
 /// A way keeps this part of the limits: 16 bits round it.
 const WITHIN: f32 = 0.98;
+/// Hips are nowhere farther from the way, metres: whoever plays roots alone sees people where they are.
+const STRAY: f32 = 0.24;
 /// Tries with other seeds.
 const TRIES: u64 = 3;
 
@@ -136,7 +138,16 @@ fn way(frame: &FramePatch, visit: &Visit, ends: [Line; 2], smoothed: f32, limits
         }
     }
     let path = Path { step: STEP, first, points: points.into_iter().map(|p| p.as_vec2()).collect() };
-    can_be_walked(frame, &path, &ends, limits).then_some(path)
+    (can_be_walked(frame, &path, &ends, limits) && stays_with(visit, &path, &ends)).then_some(path)
+}
+
+/// Whether a clip's hips are near a way while its walker is in the patch.
+fn stays_with(visit: &Visit, path: &Path, ends: &[Line; 2]) -> bool {
+    visit.body.root.iter().enumerate().all(|(frame, hips)| {
+        let secs = f64::from(visit.begin) + frame as f64 / f64::from(FPS);
+        let outside = secs < ends[0].time || secs > ends[1].time;
+        outside || Vec2::new(hips.x, hips.z).distance(path.position(secs)) < STRAY
+    })
 }
 
 /// Where the way should be: the clip's own, but straight at the border.
