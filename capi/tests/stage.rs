@@ -54,7 +54,8 @@ fn people_are_those_of_the_stage_in_any_copy_and_keep_their_id() {
             .filter(|(i, _)| (DVec2::new(roots.x()[*i].into(), roots.z()[*i].into()) + shift).distance(at) < 12.0);
         let mut expected: Vec<u64> = near.map(|(_, person)| person.hash(0)).collect();
         let mut ids: Vec<u64> = found.iter().filter(|p| p.activity < 0).map(|p| p.id).collect();
-        (expected.sort_unstable(), ids.sort_unstable());
+        expected.sort_unstable();
+        ids.sort_unstable();
         assert!(ids.len() > 20);
         assert_eq!(ids, expected);
         // Soon after, most of them are still there, and have not jumped.

@@ -26,6 +26,9 @@ pub(super) struct Run {
     pub live: u16,
 }
 
+/// Four rows of control points, eight lanes at a time.
+pub(super) type Knots<'a> = [&'a [[i16; WIDTH]]; 4];
+
 /// What follows from the tables: runs of every slot and kind, and rows.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Index {
@@ -166,12 +169,7 @@ impl Index {
 
     /// Four rows of what is present in a slot of a kind, eight lanes at a time: their x, and their z.
     #[inline(always)]
-    pub fn knots<'a>(
-        &self,
-        tables: &'a Tables,
-        slot: usize,
-        run: &Run,
-    ) -> ([&'a [[i16; WIDTH]]; 4], [&'a [[i16; WIDTH]]; 4]) {
+    pub fn knots<'a>(&self, tables: &'a Tables, slot: usize, run: &Run) -> (Knots<'a>, Knots<'a>) {
         let read = usize::from(run.live).next_multiple_of(WIDTH);
         let (n, at) = (self.strides[slot], run.at as usize);
         let eights = |at: usize| tables.rows[at..at + read].as_chunks::<WIDTH>().0;

@@ -7,7 +7,7 @@
 use glam::DVec2;
 
 use super::place::Spot;
-use super::rows::WIDTH;
+use super::rows::{Knots, WIDTH};
 use super::{Moment, World};
 
 /// Places and velocities, one array for each coordinate. Reused from frame to frame.
@@ -180,8 +180,8 @@ fn sample_patch(world: &World, slot: usize, weights: [&[f32; 4]; 2], spot: Spot,
 /// Weighs the control points of blocks of eight lanes, turns and moves them: places, then velocities.
 #[inline(always)]
 fn transform(
-    x: [&[[i16; WIDTH]]; 4],
-    z: [&[[i16; WIDTH]]; 4],
+    x: Knots,
+    z: Knots,
     [place, velocity]: [&[f32; 4]; 2],
     (sin, cos, right, up): (f32, f32, f32, f32),
     [ox, oz, ovx, ovz]: [&mut [Eight]; 4],
@@ -203,12 +203,7 @@ fn transform(
 
 /// Weighs the control points of blocks of eight lanes: places, then velocities.
 #[inline(always)]
-fn weigh_all(
-    x: [&[[i16; WIDTH]]; 4],
-    z: [&[[i16; WIDTH]]; 4],
-    [place, velocity]: [&[f32; 4]; 2],
-    [ox, oz, ovx, ovz]: [&mut [Eight]; 4],
-) {
+fn weigh_all(x: Knots, z: Knots, [place, velocity]: [&[f32; 4]; 2], [ox, oz, ovx, ovz]: [&mut [Eight]; 4]) {
     for b in 0..ox.len() {
         let x = [lift(x[0][b]), lift(x[1][b]), lift(x[2][b]), lift(x[3][b])];
         let z = [lift(z[0][b]), lift(z[1][b]), lift(z[2][b]), lift(z[3][b])];

@@ -2,27 +2,21 @@
 
 import {
   BufferAttribute,
-  DoubleSide,
   InstancedBufferAttribute,
   InstancedBufferGeometry,
   Mesh,
-  MeshDepthMaterial,
-  MeshStandardMaterial,
   PlaneGeometry,
-  RGBADepthPacking,
   ShaderMaterial,
   Vector2,
   Vector3,
-  type WebGLProgramParametersWithUniforms,
 } from "three";
 import type { Crowd, Vec2 } from "../crowd/model";
 import { tileOf, tileOffsets } from "../crowd/tiles";
+import { bodies, type Uniforms } from "./bodies";
 import { buildMannequin, restPositions } from "./mannequin";
 import { PART_COUNT } from "./palette";
-import { CLOTHES, poseLookup, skinning } from "./shaders";
+import { poseLookup } from "./shaders";
 import type { CrowdTextures } from "./textures";
-
-type Uniforms = Record<string, { value: unknown }>;
 
 export class People {
   readonly body: Mesh;
@@ -84,32 +78,7 @@ export class People {
     const builds = new Float32Array(this.tiles.flatMap(() => crowd.characters.map((c) => c.build)));
     geometry.setAttribute("build", new InstancedBufferAttribute(builds, 1));
     geometry.setIndex(new BufferAttribute(made.indices, 1));
-    const material = new MeshStandardMaterial({ roughness: 0.82, metalness: 0 });
-    material.onBeforeCompile = (shader) => this.inject(shader, crowd.joints.length, true);
-    const body = new Mesh(geometry, material);
-    const depth = new MeshDepthMaterial({ depthPacking: RGBADepthPacking, side: DoubleSide });
-    depth.onBeforeCompile = (shader) => this.inject(shader, crowd.joints.length, false);
-    body.customDepthMaterial = depth;
-    body.castShadow = body.receiveShadow = true;
-    body.frustumCulled = false;
-    return body;
-  }
-
-  /** Adds skinning and clothes to one of three's own materials. */
-  private inject(shader: WebGLProgramParametersWithUniforms, joints: number, colored: boolean): void {
-    Object.assign(shader.uniforms, this.uniforms);
-    shader.vertexShader = shader.vertexShader
-      .replace("#include <common>", `#include <common>\n${skinning(joints)}\n${CLOTHES}`)
-      .replace("#include <beginnormal_vertex>", "skin(position, normal); dress(); vec3 objectNormal = skinnedNormal;")
-      .replace(
-        "#include <begin_vertex>",
-        colored ? "vec3 transformed = skinned;" : "skin(position, vec3(0.0)); dress(); vec3 transformed = skinned;",
-      );
-    if (!colored) return;
-    shader.fragmentShader = shader.fragmentShader
-      .replace("#include <common>", "#include <common>\nvarying vec3 vCloth; varying float vChosen;")
-      .replace("#include <color_fragment>", "diffuseColor.rgb = vCloth;")
-      .replace("#include <emissivemap_fragment>", RIM);
+    return bodies(geometry, this.uniforms, crowd.joints.length);
   }
 
   private makeSpots(crowd: Crowd): Mesh {
@@ -136,12 +105,6 @@ export class People {
     return spots;
   }
 }
-
-/** A soft light along the edge of the body; stronger on the selected person. */
-const RIM = /* glsl */ `
-float rim = pow(1.0 - saturate(dot(normal, normalize(vViewPosition))), 3.0);
-totalEmissiveRadiance += vCloth * rim * 0.10 + vChosen * (vec3(0.95, 0.55, 0.16) * rim * 0.9 + vCloth * 0.10);
-`;
 
 /** Three soft dark spots per person: under the hips and under the balls of the feet. */
 const SPOT_VERTEX = /* glsl */ `

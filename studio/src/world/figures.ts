@@ -11,7 +11,7 @@ import {
   InstancedBufferGeometry,
   InstancedMesh,
   Matrix4,
-  Mesh,
+  type Mesh,
   MeshStandardMaterial,
   RGBAFormat,
   SphereGeometry,
@@ -19,12 +19,11 @@ import {
   UnsignedByteType,
   Vector2,
   Vector3,
-  type WebGLProgramParametersWithUniforms,
 } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
+import { bodies } from "../draw/bodies";
 import { buildMannequin, restPositions } from "../draw/mannequin";
 import { lookOf, looksOf, PART_COUNT, Part } from "../draw/palette";
-import { CLOTHES, skinning } from "../draw/shaders";
 import { Actor } from "./acts";
 import type { Acts, Gait } from "./model";
 import { Poser } from "./pose";
@@ -129,11 +128,7 @@ export class Figures {
       personCount: { value: MOST_NEAR },
       tileOffsets: { value: Array.from({ length: 9 }, () => new Vector2()) },
     };
-    const material = new MeshStandardMaterial({ roughness: 0.82, metalness: 0 });
-    material.onBeforeCompile = (shader) => inject(shader, gait.joints.length, uniforms);
-    const mesh = new Mesh(geometry, material);
-    mesh.frustumCulled = false;
-    return mesh;
+    return bodies(geometry, uniforms, gait.joints.length);
   }
 
   private texture(made: DataTexture): DataTexture {
@@ -149,15 +144,4 @@ function figure(): BufferGeometry {
   const trunk = new CylinderGeometry(0.2, 0.15, 0.6, 8).scale(1, 1, 0.62).translate(0, 1.13, 0);
   const head = new SphereGeometry(0.11, 8, 6).scale(0.9, 1.15, 1).translate(0, 1.6, 0.01);
   return mergeGeometries([leg(-0.09), leg(0.09), arm(-0.25), arm(0.25), trunk, head]);
-}
-
-function inject(shader: WebGLProgramParametersWithUniforms, joints: number, uniforms: Record<string, unknown>): void {
-  Object.assign(shader.uniforms, uniforms);
-  shader.vertexShader = shader.vertexShader
-    .replace("#include <common>", `#include <common>\n${skinning(joints)}\n${CLOTHES}`)
-    .replace("#include <beginnormal_vertex>", "skin(position, normal); dress(); vec3 objectNormal = skinnedNormal;")
-    .replace("#include <begin_vertex>", "vec3 transformed = skinned;");
-  shader.fragmentShader = shader.fragmentShader
-    .replace("#include <common>", "#include <common>\nvarying vec3 vCloth; varying float vChosen;")
-    .replace("#include <color_fragment>", "diffuseColor.rgb = vCloth;");
 }
