@@ -49,6 +49,7 @@ export class WorldPage {
     this.sun.shadow.mapSize.set(1024, 1024);
     const box = this.sun.shadow.camera;
     [box.left, box.bottom, box.right, box.top, box.far] = [-40, -40, 40, 40, 160];
+    box.updateProjectionMatrix();
     this.sun.shadow.normalBias = 0.05;
     this.sun.shadow.bias = -0.0012;
     this.scene.add(new HemisphereLight("#f3f6ff", "#b9a994", 1.7), this.sun, this.sun.target, this.figures.far);
