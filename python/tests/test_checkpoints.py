@@ -16,7 +16,6 @@ import pytest
 import crowdquilt as cq
 from conftest import crowdquilt
 
-
 WISH = 280
 SQUARE = f"""
 region = [[0, 0], [24, 0], [24, 24], [0, 24]]

@@ -34,7 +34,7 @@ def make_world(
     plot: Annotated[Path | None, typer.Option(help="Draw it from above: flows and densities.")] = None,
     patch: Annotated[Path | None, typer.Option(help="Draw its busiest patch, its patterns unrolled over time.")] = None,
     patches: Annotated[
-        Path | None, typer.Option(help="Walk and act as the people of this patch set (.patches); generated ones if not given.")
+        Path | None, typer.Option(help="Walk and act as its people (.patches); generated ones if not given.")
     ] = None,
     bodies: Annotated[bool, typer.Option(help="Give everybody a full body; without, the file is smaller.")] = True,
     shards: Annotated[
