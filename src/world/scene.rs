@@ -274,6 +274,7 @@ impl WorldScene {
 
 impl SceneText {
     fn plan(&self, templates: Vec<Template>, cells: Vec<Vec<usize>>) -> Plan {
+        let repeats: Vec<u32> = self.templates.iter().map(|t| t.get_ref().repeats).collect();
         Plan {
             templates,
             cells,
@@ -282,7 +283,7 @@ impl SceneText {
             endless: self.endless,
             patterns: *self.patterns.get_ref() as u64,
             versions: self.versions.into(),
-            repeats: self.templates.iter().map(|t| t.get_ref().repeats).collect(),
+            repeats: if repeats.iter().all(|&times| times == 1) { Vec::new() } else { repeats },
             goals: self.goals.iter().map(|g| g.get_ref().goal()).collect(),
             seed: self.seed,
         }
