@@ -38,7 +38,7 @@ def street(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_world_is_checked_from_its_file(street: Path) -> None:
     checked = run("check", street, "--json")
     told = json.loads(checked.stdout)
-    assert checked.returncode == 0 and told["ok"] and len(told["check"]) == 14
+    assert checked.returncode == 0 and told["ok"] and len(told["check"]) == 18
 
 
 def test_seeds_make_worlds(street: Path, tmp_path: Path) -> None:
