@@ -85,15 +85,6 @@ fn all_patches_together_play_what_each_does() {
     for time in [0.05, 4.4, 9.9999, -7.7] {
         let (moment, mut all, mut each) = (world.moment(time), Roots::default(), Roots::default());
         world.roots(&moment, origin, &mut all);
-        let (mut begin, mut block) = (0, Roots::default());
-        world.roots_in_blocks(&moment, 5, origin, &mut block, |first, roots| {
-            assert_eq!(first % 5, 0);
-            let end = begin + roots.len();
-            let whole = [&all.x()[begin..end], &all.z()[begin..end], &all.vx()[begin..end], &all.vz()[begin..end]];
-            assert_eq!(whole, [roots.x(), roots.z(), roots.vx(), roots.vz()]);
-            begin = end;
-        });
-        assert_eq!(begin, all.len());
         let spots = (0..world.instances() as u32).map(|instance| Spot { instance, shift: DVec2::ZERO });
         world.roots_of(&moment, spots, origin, &mut each);
         // To the bit.

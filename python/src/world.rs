@@ -451,16 +451,16 @@ pub fn measure_patches(
 }
 
 /// Play a large world on one core: people, kinds, bytes, root samples per second around 1 s and around 1 h, microseconds for
-/// one patch at a random time, root samples per second in blocks of patches.
+/// one patch at a random time.
 #[pyfunction]
 pub fn measure_replay(
     py: Python<'_>,
     people: usize,
     kinds: u64,
     unique: bool,
-) -> PyResult<(usize, usize, usize, f64, f64, f64, f64)> {
+) -> PyResult<(usize, usize, usize, f64, f64, f64)> {
     let r = run(py, || core::measure_replay(people, kinds, unique))?;
-    Ok((r.people, r.kinds, r.bytes, r.early, r.late, r.single_micros, r.blocks))
+    Ok((r.people, r.kinds, r.bytes, r.early, r.late, r.single_micros))
 }
 
 /// Walk through the endless street: patches made, most patches at a time, milliseconds of a frame in which a patch is

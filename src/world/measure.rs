@@ -14,7 +14,7 @@ use crate::Result;
 use crate::motion::JOINT_COUNT;
 use crate::patch::PatchSet;
 use crate::stage::World;
-use crate::stage::world::{Moment, Roots, Spot, TemplateInfo, WalkLimits, WorldInfo};
+use crate::stage::world::{Roots, Spot, TemplateInfo, WalkLimits, WorldInfo};
 
 /// Figures of patches of one size.
 #[derive(Clone, Debug)]
@@ -103,9 +103,6 @@ pub fn measure_walk(plan: &Plan, metres: f32, reach: i64, budget: usize) -> Resu
     Ok(walk)
 }
 
-/// Patches whose people are handed over at once: some thousand people, who fit into a processor's cache.
-const BLOCK: usize = 256;
-
 /// Figures of playing a large world on one core.
 #[derive(Clone, Debug)]
 pub struct Replay {
@@ -119,8 +116,6 @@ pub struct Replay {
     pub early: f64,
     /// The same around 1 h.
     pub late: f64,
-    /// The same around 1 s, handed over in blocks of 256 patches instead of all at once.
-    pub blocks: f64,
     /// Microseconds for all people of one patch at a random time: the median.
     pub single_micros: f64,
 }
@@ -133,17 +128,18 @@ pub struct Replay {
 pub fn measure_replay(people: usize, kinds: u64, unique: bool) -> Result<Replay> {
     let world = dense_world(people, kinds, unique)?;
     let mut roots = Roots::default();
-    let mut whole = |moment: &Moment| {
-        world.roots(moment, DVec2::ZERO, &mut roots);
-        roots.len()
+    let mut rate = |from: f64| {
+        let mut frames: Vec<f64> = (0..60)
+            .map(|frame| {
+                let begin = Instant::now();
+                world.roots(&world.moment(from + f64::from(frame) * 0.177), DVec2::ZERO, &mut roots);
+                roots.len() as f64 / begin.elapsed().as_secs_f64()
+            })
+            .collect();
+        frames.sort_by(f64::total_cmp);
+        frames[frames.len() / 2]
     };
-    let (early, late) = (rate(&world, 1.0, &mut whole), rate(&world, 3600.0, &mut whole));
-    let mut block = Roots::default();
-    let blocks = rate(&world, 1.0, &mut |moment| {
-        let mut people = 0;
-        world.roots_in_blocks(moment, BLOCK, DVec2::ZERO, &mut block, |_, roots| people += roots.len());
-        people
-    });
+    let (early, late) = (rate(1.0), rate(3600.0));
     let slots = world.info().slots;
     let walkers = (0..slots).map(|s| world.walkers(&world.moment(f64::from(s) * 0.2 + 0.1))).sum::<usize>();
     Ok(Replay {
@@ -152,23 +148,8 @@ pub fn measure_replay(people: usize, kinds: u64, unique: bool) -> Result<Replay>
         bytes: world.bytes(),
         early,
         late,
-        blocks,
         single_micros: single_micros(&world),
     })
-}
-
-/// People per second, who are played at many instants from one on; the median.
-fn rate(world: &World, from: f64, play: &mut dyn FnMut(&Moment) -> usize) -> f64 {
-    let mut frames: Vec<f64> = (0..60)
-        .map(|frame| {
-            let moment = world.moment(from + f64::from(frame) * 0.177);
-            let begin = Instant::now();
-            let people = play(&moment);
-            people as f64 / begin.elapsed().as_secs_f64()
-        })
-        .collect();
-    frames.sort_by(f64::total_cmp);
-    frames[frames.len() / 2]
 }
 
 /// Microseconds for a patch anywhere at any time.

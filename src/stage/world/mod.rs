@@ -160,24 +160,6 @@ impl World {
         sample::sample(self, moment, spots, origin, out);
     }
 
-    /// The same as [`Self::roots`], in blocks of so many patches: each is handed over with the number of its first patch before
-    /// the next one takes its place, so people are used while they are in the processor's cache. O(people).
-    pub fn roots_in_blocks(
-        &self,
-        moment: &Moment,
-        patches: usize,
-        origin: DVec2,
-        out: &mut Roots,
-        mut see: impl FnMut(usize, &Roots),
-    ) {
-        for first in (0..self.instances()).step_by(patches.max(1)) {
-            let block = first..(first + patches.max(1)).min(self.instances());
-            let spots = block.map(|instance| Spot { instance: instance as u32, shift: DVec2::ZERO });
-            self.roots_of(moment, spots, origin, out);
-            see(first, out);
-        }
-    }
-
     /// First slot of the stay of every walker of a kind, counted from the period it comes in, and the slot after the last: the patch
     /// has it from one to the other.
     pub fn stays(&self, kind: usize) -> Vec<(i64, i64)> {
