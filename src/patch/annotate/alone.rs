@@ -220,7 +220,7 @@ fn choose(all: Vec<Piece>, most: usize) -> Vec<Piece> {
 
 /// The `most` rests that need the least room.
 fn quietest(mut rests: Vec<Piece>, most: usize) -> Vec<Piece> {
-    rests.sort_by(|a, b| a.reach.partial_cmp(&b.reach).expect("rests reach somewhere"));
+    rests.sort_by(|a, b| a.reach.unwrap_or_default().total_cmp(&b.reach.unwrap_or_default()));
     rests.truncate(most);
     rests
 }

@@ -1,4 +1,4 @@
-/** Full bodies out of the gait table: joints' places and rotations, blended by speed and phase as in gait.rs. */
+/** Full bodies out of the gait table: joints' places and rotations, blended by speed and phase as in src/stage/world/gait. */
 
 import { lead } from "./leg";
 import type { Gait } from "./model";
