@@ -26,7 +26,7 @@ fn everybody(world: &World, time: f64) -> HashMap<Person, (DVec2, DVec2)> {
     let moment = world.moment(time);
     let mut roots = Roots::default();
     world.roots(&moment, DVec2::ZERO, &mut roots);
-    let people = (0..world.instances()).flat_map(|i| world.people_of(i, [0, 0], &moment));
+    let people = world.order().flat_map(|i| world.people_of(i, [0, 0], &moment));
     let places = (0..roots.len()).map(|i| {
         let [x, z, vx, vz] = [roots.x(), roots.z(), roots.vx(), roots.vz()].map(|list| f64::from(list[i]));
         (DVec2::new(x, z), DVec2::new(vx, vz))
@@ -85,7 +85,7 @@ fn all_patches_together_play_what_each_does() {
     for time in [0.05, 4.4, 9.9999, -7.7] {
         let (moment, mut all, mut each) = (world.moment(time), Roots::default(), Roots::default());
         world.roots(&moment, origin, &mut all);
-        let spots = (0..world.instances() as u32).map(|instance| Spot { instance, shift: DVec2::ZERO });
+        let spots = world.order().map(|instance| Spot { instance: instance as u32, shift: DVec2::ZERO });
         world.roots_of(&moment, spots, origin, &mut each);
         // To the bit.
         assert!(all.len() > 500 && all.x() == each.x() && all.z() == each.z());

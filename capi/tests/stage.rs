@@ -48,7 +48,7 @@ fn people_are_those_of_the_stage_in_any_copy_and_keep_their_id() {
         let shift = DVec2::new(64.0 * copy[0] as f64, 0.0);
         let mut roots = crowdquilt::stage::world::Roots::default();
         world.roots(&moment, DVec2::ZERO, &mut roots);
-        let all = (0..world.instances()).flat_map(|i| world.people_of(i, copy, &moment));
+        let all = world.order().flat_map(|i| world.people_of(i, copy, &moment));
         let near = all
             .enumerate()
             .filter(|(i, _)| (DVec2::new(roots.x()[*i].into(), roots.z()[*i].into()) + shift).distance(at) < 12.0);

@@ -149,8 +149,14 @@ impl World {
         self.first_stayer[self.instances()] as usize
     }
 
-    /// Where everybody who walks is at `moment`, patch by patch, metres from `origin`. O(people); allocates only where `out` has
-    /// never been as large.
+    /// Patches in the order in which [`Self::roots`] plays them: those of a kind together, where kinds are shared.
+    pub fn order(&self) -> impl ExactSizeIterator<Item = usize> {
+        let shared = self.rows.shared.as_ref().map(|shared| &shared.instances);
+        (0..self.instances()).map(move |i| shared.map_or(i, |instances| instances[i] as usize))
+    }
+
+    /// Where everybody who walks is at `moment`, patch by patch in [order](Self::order), metres from `origin`. O(people); allocates
+    /// only where `out` has never been as large.
     pub fn roots(&self, moment: &Moment, origin: DVec2, out: &mut Roots) {
         sample::sample_all(self, moment, origin, out);
     }

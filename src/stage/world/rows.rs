@@ -40,8 +40,32 @@ pub(super) struct Index {
     pub turns: Vec<[f32; 2]>,
     /// People who walk, of every slot.
     pub people: Vec<u32>,
-    /// Whether it pays to weigh each kind's control points once for all patches of the kind.
-    pub shared: bool,
+    /// Patches kind by kind, where kinds are shared by so many that it pays to weigh each one's control points once for all of them.
+    pub shared: Option<ByKind>,
+}
+
+/// Patches kind by kind.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct ByKind {
+    /// End of every kind's patches in `instances`.
+    ends: Vec<u32>,
+    pub instances: Vec<u32>,
+}
+
+impl ByKind {
+    fn new(kinds: usize, of: &[u32]) -> Self {
+        let mut instances: Vec<u32> = (0..of.len() as u32).collect();
+        instances.sort_by_key(|&instance| of[instance as usize]);
+        let end = |kind| instances.partition_point(|&instance| of[instance as usize] <= kind) as u32;
+        Self { ends: (0..kinds as u32).map(end).collect(), instances }
+    }
+
+    /// The patches of a kind.
+    #[inline(always)]
+    pub fn of(&self, kind: usize) -> &[u32] {
+        let begin = if kind == 0 { 0 } else { self.ends[kind - 1] };
+        &self.instances[begin as usize..self.ends[kind] as usize]
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,7 +88,8 @@ impl Index {
         let turn = |t: &f32| [t.sin(), t.cos()].map(|part| part * tables.info.metres_per_unit);
         let turns = tables.instance_turns.iter().map(turn).collect();
         let together = tables.instance_phases.iter().all(|&phase| phase == 0);
-        let shared = together && tables.instance_kinds.len() >= SHARED * kinds;
+        let shared = (together && tables.instance_kinds.len() >= SHARED * kinds)
+            .then(|| ByKind::new(kinds, &tables.instance_kinds));
         let mut index = Self { runs, turns, strides: Vec::new(), pages: Vec::new(), people: Vec::new(), shared };
         let stays: Vec<(i64, i64)> = (0..kinds).flat_map(|kind| stays(tables, kind)).collect();
         let mut begin = 0;
@@ -190,7 +215,9 @@ impl Index {
     }
 
     pub fn bytes(&self) -> usize {
-        8 * (self.runs.len() + self.strides.len() + self.turns.len()) + 24 * self.pages.len() + 4 * self.people.len()
+        let shared = self.shared.as_ref().map_or(0, |shared| shared.ends.len() + shared.instances.len());
+        let four = self.people.len() + shared;
+        8 * (self.runs.len() + self.strides.len() + self.turns.len()) + 24 * self.pages.len() + 4 * four
     }
 }
 

@@ -7,18 +7,18 @@
 use glam::DVec2;
 
 use super::place::Spot;
-use super::rows::{Knots, WIDTH};
+use super::rows::{ByKind, Knots, WIDTH};
 use super::{Moment, World};
+
+type Eight = [f32; WIDTH];
 
 /// Places and velocities, one array for each coordinate. Reused from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub struct Roots {
     arrays: [Vec<f32>; 4],
     len: usize,
-    /// Lanes of every kind, weighed, for worlds whose kinds are shared: places and velocities in units of the kind's frame.
-    weighed: [Vec<f32>; 4],
-    /// Where each kind's are, and how many.
-    parts: Vec<[u32; 2]>,
+    /// Lanes of a kind, weighed, for worlds whose kinds are shared: places and velocities in units of the kind's frame.
+    weighed: Vec<[Eight; 4]>,
 }
 
 impl Roots {
@@ -76,18 +76,19 @@ pub(super) fn sample(
 
 /// Samples the walkers of all patches.
 pub(super) fn sample_all(world: &World, moment: &Moment, origin: DVec2, out: &mut Roots) {
-    if !world.rows.shared {
+    let Some(shared) = &world.rows.shared else {
         let all = 0..world.instances() as u32;
         return sample(world, moment, all.map(|instance| Spot { instance, shift: DVec2::ZERO }), origin, out);
-    }
+    };
     out.grow(world.walkers(moment) + WIDTH);
     out.len = 0;
-    pulp::Arch::new().dispatch(SamplingKinds { world, moment, origin, out });
+    pulp::Arch::new().dispatch(SamplingKinds { world, shared, moment, origin, out });
 }
 
-/// Weighs what is present of every kind, then turns and moves it for every patch.
+/// Weighs what is present of every kind, then turns and moves it for every patch of the kind.
 struct SamplingKinds<'a> {
     world: &'a World,
+    shared: &'a ByKind,
     moment: &'a Moment,
     origin: DVec2,
     out: &'a mut Roots,
@@ -98,35 +99,28 @@ impl pulp::NullaryFnOnce for SamplingKinds<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { world, moment, origin, out } = self;
+        let Self { world, shared, moment, origin, out } = self;
         let (tables, kinds) = (&world.tables, world.kinds());
         let (place, velocity) = (moment.place, moment.velocity);
         let slot = moment.slot as usize;
         let runs = &world.rows.runs[slot * kinds..(slot + 1) * kinds];
-        let whole = runs.iter().map(|run| usize::from(run.live).next_multiple_of(WIDTH)).sum();
-        out.weighed.iter_mut().for_each(|list| list.resize(whole, 0.0));
-        out.parts.clear();
-        let mut begin = 0;
-        for run in runs {
-            let read = usize::from(run.live).next_multiple_of(WIDTH);
+        for (kind, run) in runs.iter().enumerate() {
+            let live = usize::from(run.live);
+            let blocks = live.div_ceil(WIDTH);
             let (x, z) = world.rows.knots(tables, slot, run);
-            let [px, pz, vx, vz] = &mut out.weighed;
-            let into = [px, pz, vx, vz].map(|list| list[begin..begin + read].as_chunks_mut::<WIDTH>().0);
-            weigh_all(x, z, [&place, &velocity], into);
-            out.parts.push([begin as u32, u32::from(run.live)]);
-            begin += read;
-        }
-        for (instance, &kind) in tables.instance_kinds.iter().enumerate() {
-            let [begin, live] = out.parts[kind as usize].map(|number| number as usize);
-            let (first, read) = (out.len, live.next_multiple_of(WIDTH));
-            out.len += live;
-            let [sin, cos] = world.rows.turns[instance];
-            let place = (tables.place(instance) - origin).as_vec2();
-            let [px, pz, vx, vz] = &out.weighed;
-            let from = [px, pz, vx, vz].map(|list| list[begin..begin + read].as_chunks::<WIDTH>().0);
-            let [ox, oz, ovx, ovz] = &mut out.arrays;
-            let into = [ox, oz, ovx, ovz].map(|array| array[first..first + read].as_chunks_mut::<WIDTH>().0);
-            turn_all(from, (sin, cos, place.x, place.y), into);
+            let weighed = &mut out.weighed;
+            weighed.resize(blocks, [[0.0; WIDTH]; 4]);
+            weigh_all(x, z, [&place, &velocity], weighed);
+            for &instance in shared.of(kind) {
+                let instance = instance as usize;
+                let (first, read) = (out.len, blocks * WIDTH);
+                out.len += live;
+                let [sin, cos] = world.rows.turns[instance];
+                let place = (tables.place(instance) - origin).as_vec2();
+                let [ox, oz, ovx, ovz] = &mut out.arrays;
+                let into = [ox, oz, ovx, ovz].map(|array| array[first..first + read].as_chunks_mut::<WIDTH>().0);
+                turn_all(&out.weighed, (sin, cos, place.x, place.y), into);
+            }
         }
     }
 }
@@ -155,8 +149,6 @@ impl<I: Iterator<Item = Spot>> pulp::NullaryFnOnce for Sampling<'_, I> {
         }
     }
 }
-
-type Eight = [f32; WIDTH];
 
 #[inline(always)]
 fn sample_patch(world: &World, slot: usize, weights: [&[f32; 4]; 2], spot: Spot, origin: DVec2, out: &mut Roots) {
@@ -203,27 +195,24 @@ fn transform(
 
 /// Weighs the control points of blocks of eight lanes: places, then velocities.
 #[inline(always)]
-fn weigh_all(x: Knots, z: Knots, [place, velocity]: [&[f32; 4]; 2], [ox, oz, ovx, ovz]: [&mut [Eight]; 4]) {
-    for b in 0..ox.len() {
+fn weigh_all(x: Knots, z: Knots, [place, velocity]: [&[f32; 4]; 2], out: &mut [[Eight; 4]]) {
+    for (b, out) in out.iter_mut().enumerate() {
         let x = [lift(x[0][b]), lift(x[1][b]), lift(x[2][b]), lift(x[3][b])];
         let z = [lift(z[0][b]), lift(z[1][b]), lift(z[2][b]), lift(z[3][b])];
-        (ox[b], oz[b]) = (weigh(&x, place), weigh(&z, place));
-        (ovx[b], ovz[b]) = (weigh(&x, velocity), weigh(&z, velocity));
+        *out = [weigh(&x, place), weigh(&z, place), weigh(&x, velocity), weigh(&z, velocity)];
     }
 }
 
 /// Turns and moves blocks of eight lanes that have been weighed. The same sums as in [`transform`].
 #[inline(always)]
 fn turn_all(
-    [px, pz, vx, vz]: [&[Eight]; 4],
+    weighed: &[[Eight; 4]],
     (sin, cos, right, up): (f32, f32, f32, f32),
     [ox, oz, ovx, ovz]: [&mut [Eight]; 4],
 ) {
-    let n = ox.len();
-    let (px, pz, vx, vz) = (&px[..n], &pz[..n], &vx[..n], &vz[..n]);
-    let (oz, ovx, ovz) = (&mut oz[..n], &mut ovx[..n], &mut ovz[..n]);
-    for b in 0..n {
-        let (px, pz, vx, vz) = (px[b], pz[b], vx[b], vz[b]);
+    let n = weighed.len();
+    let (ox, oz, ovx, ovz) = (&mut ox[..n], &mut oz[..n], &mut ovx[..n], &mut ovz[..n]);
+    for (b, [px, pz, vx, vz]) in weighed.iter().enumerate() {
         ox[b] = std::array::from_fn(|i| cos * px[i] - sin * pz[i] + right);
         oz[b] = std::array::from_fn(|i| sin * px[i] + cos * pz[i] + up);
         ovx[b] = std::array::from_fn(|i| cos * vx[i] - sin * vz[i]);
