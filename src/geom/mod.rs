@@ -8,6 +8,7 @@ mod ground;
 mod obstacle;
 mod polygon;
 mod torus;
+mod trigonometry;
 
 pub use capsule::Capsule;
 pub use cuboid::{Cuboid, Upright};
@@ -16,3 +17,4 @@ pub use ground::{Ground, Turn, wrap_angle};
 pub use obstacle::{Obstacle, Waypoint};
 pub use polygon::Polygon;
 pub use torus::{Cycle, Periodic, Torus};
+pub(crate) use trigonometry::sin_cos;

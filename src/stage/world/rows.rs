@@ -33,8 +33,7 @@ pub(super) type Knots<'a> = [&'a [[i16; WIDTH]]; 4];
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Index {
     pub runs: Vec<Run>,
-    /// From row to row, of every slot.
-    strides: Vec<usize>,
+    slots: Vec<Slot>,
     pages: Vec<Page>,
     /// Sine and cosine of every patch's turn, times the metres of a unit.
     pub turns: Vec<[f32; 2]>,
@@ -69,6 +68,15 @@ impl ByKind {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Slot {
+    /// The first number of its first row in `Tables::rows`.
+    begin: usize,
+    /// Numbers of a row.
+    row: u32,
+    page: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Page {
     /// Its first number in `Tables::rows`.
     begin: usize,
@@ -90,7 +98,7 @@ impl Index {
         let together = tables.instance_phases.iter().all(|&phase| phase == 0);
         let shared = (together && tables.instance_kinds.len() >= SHARED * kinds)
             .then(|| ByKind::new(kinds, &tables.instance_kinds));
-        let mut index = Self { runs, turns, strides: Vec::new(), pages: Vec::new(), people: Vec::new(), shared };
+        let mut index = Self { runs, turns, slots: Vec::new(), pages: Vec::new(), people: Vec::new(), shared };
         let stays: Vec<(i64, i64)> = (0..kinds).flat_map(|kind| stays(tables, kind)).collect();
         let mut begin = 0;
         for page in 0..tables.pages() {
@@ -98,7 +106,8 @@ impl Index {
             let (first, last) = (end(page * kinds), end((page + 1) * kinds));
             let row = 2 * (last - first);
             index.pages.push(Page { begin, row, lane: first });
-            index.strides.extend(std::iter::repeat_n(row, tables.page_slots(page)));
+            let slot = |step: usize| Slot { begin: begin + step * row, row: row as u32, page: page as u32 };
+            index.slots.extend((0..tables.page_slots(page)).map(slot));
             begin += row * (tables.page_slots(page) + 3);
             let mut walkers = 0;
             for kind in 0..kinds {
@@ -179,46 +188,61 @@ impl Index {
     }
 
     /// Place and velocity of the `lane`-th of those present in a slot of a kind.
+    #[inline]
     pub fn lane(&self, tables: &Tables, kind: usize, lane: usize, moment: &Moment) -> (Vec2, Vec2) {
         let slot = moment.slot as usize;
         let run = self.runs[slot * tables.kinds() + kind];
-        let at = run.at as usize + lane;
-        let (rows, n, unit) = (&tables.rows, self.strides[slot], tables.info.metres_per_unit);
-        let row = |at: usize| f32::from(rows[at]);
-        let weighed = |w: &[f32; 4], at: usize| -> f32 {
-            (w[0] * row(at) + w[1] * row(at + n) + w[2] * row(at + 2 * n) + w[3] * row(at + 3 * n)) * unit
-        };
-        let both = |weights| Vec2::new(weighed(weights, at), weighed(weights, at + usize::from(run.lanes)));
-        (both(&moment.place), both(&moment.velocity))
+        let at = [run.at as usize + lane, usize::from(run.lanes), self.slots[slot].row as usize];
+        let knots = four_knots(tables, at);
+        let weighed = |weights| weigh(&knots, weights) * tables.info.metres_per_unit;
+        (weighed(&moment.place), weighed(&moment.velocity))
     }
 
     /// Four rows of what is present in a slot of a kind, eight lanes at a time: their x, and their z.
     #[inline(always)]
     pub fn knots<'a>(&self, tables: &'a Tables, slot: usize, run: &Run) -> (Knots<'a>, Knots<'a>) {
         let read = usize::from(run.live).next_multiple_of(WIDTH);
-        let (n, at) = (self.strides[slot], run.at as usize);
+        let (n, at) = (self.slots[slot].row as usize, run.at as usize);
         let eights = |at: usize| tables.rows[at..at + read].as_chunks::<WIDTH>().0;
         let four = |at: usize| [eights(at), eights(at + n), eights(at + 2 * n), eights(at + 3 * n)];
         (four(at), four(at + usize::from(run.lanes)))
     }
 
-    /// Where the control points of a lane are in a slot that it is present in: its x in the first of four rows, how far behind its z
-    /// is, and from row to row.
-    pub fn find(&self, tables: &Tables, kind: usize, slot: usize, lane: Lane) -> Option<[usize; 3]> {
-        let (page, step) = (slot / tables.info.page as usize, slot % tables.info.page as usize);
-        let index = page * tables.kinds() + kind;
+    /// Which page a slot is in.
+    #[inline]
+    pub fn page_of(&self, slot: usize) -> usize {
+        self.slots[slot].page as usize
+    }
+
+    /// Where the control points of a kind's lane number `number` (in its page) are in a slot: its x in the first of four rows, how
+    /// far behind its z is, and from row to row.
+    #[inline]
+    pub fn find(&self, tables: &Tables, kind: usize, slot: usize, number: usize) -> [usize; 3] {
+        let Slot { begin, row, page } = self.slots[slot];
+        let index = page as usize * tables.kinds() + kind;
         let first = if index == 0 { 0 } else { tables.lane_ends[index - 1] as usize };
-        let lanes = &tables.lanes[first..tables.lane_ends[index] as usize];
-        let number = lanes.iter().position(|&other| other == lane.0)?;
-        let Page { begin, row, lane: base } = self.pages[page];
-        Some([begin + step * row + 2 * (first - base) + number, lanes.len(), row])
+        let lanes = tables.lane_ends[index] as usize - first;
+        [begin + 2 * (first - self.pages[page as usize].lane) + number, lanes, row as usize]
     }
 
     pub fn bytes(&self) -> usize {
         let shared = self.shared.as_ref().map_or(0, |shared| shared.ends.len() + shared.instances.len());
         let four = self.people.len() + shared;
-        8 * (self.runs.len() + self.strides.len() + self.turns.len()) + 24 * self.pages.len() + 4 * four
+        8 * (self.runs.len() + self.turns.len()) + 16 * self.slots.len() + 24 * self.pages.len() + 4 * four
     }
+}
+
+/// The four control points of a lane: where its x is in the first of four rows, how far behind its z is, and from row to row.
+#[inline]
+pub(super) fn four_knots(tables: &Tables, [at, behind, stride]: [usize; 3]) -> [Vec2; 4] {
+    let knot = |at: usize| Vec2::new(f32::from(tables.rows[at]), f32::from(tables.rows[at + behind]));
+    [knot(at), knot(at + stride), knot(at + 2 * stride), knot(at + 3 * stride)]
+}
+
+/// Their weighted sum.
+#[inline]
+pub(super) fn weigh(knots: &[Vec2; 4], w: &[f32; 4]) -> Vec2 {
+    knots[0] * w[0] + knots[1] * w[1] + knots[2] * w[2] + knots[3] * w[3]
 }
 
 /// First slot of every walker's stay, and the slot after the last. The neighbour rounds the same time, so that at every

@@ -6,7 +6,7 @@
 use glam::{Quat, Vec2, Vec3};
 
 use super::feet::Foot;
-use crate::motion::{JOINT_COUNT, canonical, joint};
+use crate::motion::{JOINT_COUNT, Joint, canonical, joint};
 
 /// Largest part of a leg's length that is used, so that knees never lock.
 const STRETCH: f32 = 0.995;
@@ -23,9 +23,34 @@ const STRAIGHT: f32 = 0.1;
 /// How far the tips of toes may sink into the floor, metres.
 const TOES: f32 = 0.005;
 
+/// The bones of a leg: those of thigh and shin hang straight down at rest.
+#[derive(Clone, Copy)]
+struct Bones {
+    hip: Vec3,
+    thigh: f32,
+    shin: f32,
+    foot: Vec3,
+    toes: Vec3,
+}
+
+impl Bones {
+    #[inline]
+    fn of(joints: &[Joint], up: usize) -> Self {
+        let [hip, knee, ankle, ball] = std::array::from_fn(|i| joints[up + i].offset);
+        Self { hip, thigh: -knee.y, shin: -ankle.y, foot: ball, toes: joints[up + 3].tip.unwrap_or(Vec3::ZERO) }
+    }
+
+    /// From hip to ankle, as far as that may be.
+    #[inline]
+    fn reach(&self) -> f32 {
+        (self.thigh + self.shin) * STRETCH
+    }
+}
+
 /// A leg, in the world's directions, relative to where its owner is.
 struct Leg {
     up: usize,
+    bones: Bones,
     hip: Vec3,
     knee: Vec3,
     ankle: Vec3,
@@ -34,15 +59,17 @@ struct Leg {
     /// Where the ball is to be, and how the foot is to be turned there.
     ball: Vec3,
     foot: Quat,
+    /// Where the ankle is then.
+    target: Vec3,
 }
 
 /// Leads the legs of a `pose` (its hips turned in the world, at `root`) to the `feet`; returns by how much the hips come down.
-/// `turn` is where the body looks.
-pub(super) fn lead(pose: &mut [Quat; JOINT_COUNT], root: Vec3, turn: Quat, feet: &[Foot; 2]) -> f32 {
-    let mut legs = [
-        Leg::new(pose, root, turn, joint::LEFT_UP_LEG, &feet[0]),
-        Leg::new(pose, root, turn, joint::RIGHT_UP_LEG, &feet[1]),
-    ];
+/// `facing` is where the body looks, as x and z.
+#[inline]
+pub(super) fn lead(pose: &mut [Quat; JOINT_COUNT], root: Vec3, facing: Vec2, feet: &[Foot; 2]) -> f32 {
+    let joints = &canonical().joints;
+    let leg = |up: usize, foot: &Foot| Leg::new(pose, Bones::of(joints, up), root, facing, up, foot);
+    let mut legs = [leg(joint::LEFT_UP_LEG, &feet[0]), leg(joint::RIGHT_UP_LEG, &feet[1])];
     let lowering = eased(legs[0].lowering().max(legs[1].lowering())).min(LOWERING);
     for leg in &mut legs {
         leg.hip.y -= lowering;
@@ -61,55 +88,50 @@ fn eased(need: f32) -> f32 {
 
 impl Leg {
     #[inline]
-    fn new(pose: &[Quat; JOINT_COUNT], root: Vec3, turn: Quat, up: usize, foot: &Foot) -> Self {
-        let joints = &canonical().joints;
+    fn new(pose: &[Quat; JOINT_COUNT], bones: Bones, root: Vec3, facing: Vec2, up: usize, foot: &Foot) -> Self {
         let thigh = pose[0] * pose[up];
         let shin = thigh * pose[up + 1];
         let own = shin * pose[up + 2];
-        let hip = root + pose[0] * joints[up].offset;
-        let knee = hip + thigh * joints[up + 1].offset;
-        let ankle = knee + shin * joints[up + 2].offset;
-        let aside = aside(turn, foot.ahead);
-        let turned = aside * own;
-        let mut ball = foot.ball;
+        let hip = root + pose[0] * bones.hip;
+        let knee = hip - upward(thigh) * bones.thigh;
+        let ankle = knee - upward(shin) * bones.shin;
+        let turned = aside(facing, foot.ahead, own);
+        let (to_ball, mut ball) = (turned * bones.foot, foot.ball);
         // A heel that strikes the floor before the ball does not go through it.
-        ball.y += (HEEL - (ball.y - (turned * joints[up + 3].offset).y)).max(0.0);
-        Self { up, hip, knee, ankle, turns: [thigh, shin, turned, turned * pose[up + 3]], ball, foot: turned }
-    }
-
-    #[inline]
-    fn target(&self) -> Vec3 {
-        self.ball - self.foot * canonical().joints[self.up + 3].offset
-    }
-
-    #[inline]
-    fn reach(&self) -> f32 {
-        let joints = &canonical().joints;
-        (joints[self.up + 1].offset.y + joints[self.up + 2].offset.y).abs() * STRETCH
+        ball.y += (HEEL - (ball.y - to_ball.y)).max(0.0);
+        let (turns, target) = ([thigh, shin, turned, turned * pose[up + 3]], ball - to_ball);
+        Self { up, bones, hip, knee, ankle, turns, ball, foot: turned, target }
     }
 
     #[inline]
     /// How far the hips should come down for the foot to be in reach; negative where it is nearer than that.
     fn lowering(&self) -> f32 {
-        let (target, reach) = (self.target(), self.reach());
-        let across = (target - self.hip).with_y(0.0).length_squared();
-        self.hip.y - target.y - (reach * reach - across).max(0.0).sqrt()
+        let reach = self.bones.reach();
+        let across = (self.target - self.hip).with_y(0.0).length_squared();
+        self.hip.y - self.target.y - (reach * reach - across).max(0.0).sqrt()
     }
 
     /// Turns the foot about its ball until the ankle is in reach, as far as it goes.
+    #[inline]
     fn lift_heel(&mut self) {
-        let (target, reach) = (self.target(), self.reach());
-        let (bone, to_hip) = (target - self.ball, self.hip - self.ball);
-        if target.distance_squared(self.hip) <= reach * reach {
-            return;
+        let reach = self.bones.reach();
+        if self.target.distance_squared(self.hip) > reach * reach {
+            self.lift_heel_by(reach);
         }
+    }
+
+    #[cold]
+    fn lift_heel_by(&mut self, reach: f32) {
+        let (bone, to_hip) = (self.target - self.ball, self.hip - self.ball);
         let (foot, whole) = (bone.length(), to_hip.length());
         let cosine = (foot * foot + whole * whole - reach * reach) / (2.0 * foot * whole);
         let angle = (bone.angle_between(to_hip) - cosine.clamp(-1.0, 1.0).acos()).clamp(0.0, LIFT);
         let axis = bone.cross(to_hip).normalize_or_zero();
         self.foot = Quat::from_axis_angle(if axis == Vec3::ZERO { Vec3::X } else { axis }, angle) * self.foot;
+        self.target = self.ball - self.foot * self.bones.foot;
     }
 
+    #[inline]
     fn bend(&mut self, pose: &mut [Quat; JOINT_COUNT]) {
         let flat = self.foot;
         self.lift_heel();
@@ -127,9 +149,8 @@ impl Leg {
     /// swings. A few square roots and nothing else: this runs for everybody in every frame.
     #[inline]
     fn reached(&self) -> [Quat; 2] {
-        let (thigh, shin, way) = (self.knee - self.hip, self.ankle - self.knee, self.target() - self.hip);
-        let joints = &canonical().joints;
-        let (a, b) = (joints[self.up + 1].offset.length(), joints[self.up + 2].offset.length());
+        let (thigh, shin, way) = (self.knee - self.hip, self.ankle - self.knee, self.target - self.hip);
+        let (a, b) = (self.bones.thigh, self.bones.shin);
         let (a2, b2, now) = (a * a, b * b, (thigh + shin).length_squared());
         let (most, far) = ((a + b) * 0.9999, way.length());
         let reach = far.clamp(0.1, most);
@@ -154,12 +175,11 @@ impl Leg {
     #[inline]
     /// How the toes are turned: as they were, but not into the floor.
     fn toes(&self) -> Quat {
-        let turn = self.turns[3];
-        let tip = turn * canonical().joints[self.up + 3].tip.unwrap_or(Vec3::ZERO);
-        let lowest = -TOES - self.ball.y;
-        if tip.y >= lowest {
+        let (turn, lowest) = (self.turns[3], -TOES - self.ball.y);
+        if height(turn).dot(self.bones.toes) >= lowest {
             return turn;
         }
+        let tip = turn * self.bones.toes;
         let slope = |y: f32| (y / tip.length()).clamp(-1.0, 1.0).asin();
         let axis = tip.cross(Vec3::Y).try_normalize().unwrap_or(turn * Vec3::NEG_X);
         Quat::from_axis_angle(axis, slope(lowest) - slope(tip.y)) * turn
@@ -200,11 +220,30 @@ impl Opening {
     }
 }
 
-/// The turn about the vertical from where a body looks to where its foot looks.
-fn aside(turn: Quat, ahead: Vec2) -> Quat {
-    let body = turn * Vec3::Z;
-    let (sine, cosine) = (ahead.x * body.z - ahead.y * body.x, ahead.x * body.x + ahead.y * body.z);
-    let length = (sine * sine + cosine * cosine).sqrt();
+/// `rotation`, turned about the vertical from where its body looks to where its foot looks.
+#[inline]
+fn aside(facing: Vec2, ahead: Vec2, rotation: Quat) -> Quat {
+    let (sine, cosine) = (ahead.x * facing.y - ahead.y * facing.x, ahead.dot(facing));
     // Of half the angle. A foot that looked straight back would be on the wrong leg.
-    Quat::from_xyzw(0.0, sine, 0.0, (length + cosine).max(1e-3)).normalize()
+    let half = Vec2::new((sine * sine + cosine * cosine).sqrt() + cosine, sine);
+    about_vertical(Vec2::new(half.x.max(1e-3), half.y).normalize(), rotation)
+}
+
+/// `rotation`, then a turn about the vertical of which cosine and sine of half the angle are given.
+#[inline]
+pub(super) fn about_vertical(half: Vec2, rotation: Quat) -> Quat {
+    let ((c, s), [x, y, z, w]) = ((half.x, half.y), rotation.to_array());
+    Quat::from_xyzw(c * x + s * z, c * y + s * w, c * z - s * x, c * w - s * y)
+}
+
+/// Where a rotation leads the y axis to.
+#[inline]
+fn upward(q: Quat) -> Vec3 {
+    Vec3::new(2.0 * (q.x * q.y - q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z + q.w * q.x))
+}
+
+/// How high a rotation leads each of the axes.
+#[inline]
+fn height(q: Quat) -> Vec3 {
+    Vec3::new(2.0 * (q.x * q.y + q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z - q.w * q.x))
 }

@@ -29,6 +29,7 @@ pub(super) use walks::Ways;
 use super::tables::expect;
 use super::{Spot, World};
 use crate::Result;
+use crate::geom::sin_cos;
 use crate::motion::JOINT_COUNT;
 
 /// Steps are stored in this part of a cycle of two steps.
@@ -162,11 +163,14 @@ impl Walking {
     /// Root and rotations of the canonical skeleton for this body, in the frame of its place. No allocation.
     pub fn pose(&self, table: &GaitTable, pose: &mut [Quat; JOINT_COUNT]) -> Vec3 {
         let hips = table.pose(self.velocity.length(), self.phase, pose);
-        let turn = Quat::from_rotation_y(self.heading);
-        pose[0] = turn * pose[0];
-        let mut root = turn * hips;
+        let (half_sin, half_cos) = sin_cos(0.5 * self.heading);
+        let facing = Vec2::new(2.0 * half_sin * half_cos, half_cos * half_cos - half_sin * half_sin);
+        pose[0] = leg::about_vertical(Vec2::new(half_cos, half_sin), pose[0]);
+        let left = Vec2::new(facing.y, -facing.x);
+        let across = left * hips.x + facing * hips.z;
+        let mut root = Vec3::new(across.x, hips.y, across.y);
         if let Some(feet) = &self.feet {
-            root.y -= leg::lead(pose, root, turn, feet);
+            root.y -= leg::lead(pose, root, facing, feet);
         }
         root + Vec3::new(self.place.x, 0.0, self.place.y)
     }
@@ -227,9 +231,4 @@ impl World {
 /// What a phase is beyond whole cycles. Phases are not below zero, so this needs no call of the system's mathematics.
 fn fraction_of(phase: f32) -> f32 {
     phase - phase as i32 as f32
-}
-
-#[inline]
-fn mixed(a: i16, b: i16, share: f32) -> f32 {
-    f32::from(a) + (f32::from(b) - f32::from(a)) * share
 }

@@ -6,8 +6,9 @@ use glam::{DVec2, Vec2};
 
 use super::super::moment::weights;
 use super::super::{Lane, Tables, UNITS_PER_METRE, World, rows};
-use super::{Gait, PER_RADIAN, STEPS_PER_CYCLE, mixed};
+use super::{Gait, PER_RADIAN, STEPS_PER_CYCLE};
 use crate::Result;
+use crate::geom::sin_cos;
 
 /// No stay before or after.
 const NONE: u32 = u32::MAX;
@@ -19,6 +20,8 @@ const FAR: usize = 64;
 struct Track {
     /// Its first number in the gait's tables.
     first: u32,
+    /// Its first number in `Ways::lanes`.
+    lanes: u32,
     /// The slot it comes in.
     enter: u16,
     /// Slots of its stay.
@@ -31,6 +34,8 @@ pub(in crate::stage::world) struct Ways {
     /// Number of walkers before every kind.
     first_walker: Vec<u32>,
     tracks: Vec<Track>,
+    /// Which of its kind's lanes a walker is, in every page of its stay.
+    lanes: Vec<u16>,
     /// Crossings before and after every crossing; none if feet do not need them.
     links: Vec<[u32; 2]>,
 }
@@ -39,9 +44,9 @@ pub(in crate::stage::world) struct Ways {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::stage::world) struct Stay {
     kind: u32,
-    walker: u32,
     crossing: u32,
     first: u32,
+    lanes: u32,
     slots: i32,
     /// The slot it comes in.
     pub enter: i32,
@@ -66,23 +71,48 @@ pub(super) struct Instant {
 impl Ways {
     /// # Errors
     /// If the gait does not fit the world.
-    pub fn new(tables: &Tables, first_crossing: &[u32]) -> Result<Self> {
+    pub fn new(tables: &Tables, index: &rows::Index, first_crossing: &[u32]) -> Result<Self> {
         let Some(gait) = &tables.gait else { return Ok(Self::default()) };
         let (mut ways, mut at) = (Self::default(), 0_u64);
         for kind in 0..tables.kinds() {
             ways.first_walker.push(ways.tracks.len() as u32);
             for (enter, leave) in rows::stays(tables, kind) {
-                let slots = (leave - enter).max(0);
-                ways.tracks.push(Track { first: at as u32, enter: enter as u16, slots: slots.min(0xffff) as u16 });
-                at += slots as u64 + 1;
+                let slots = (leave - enter).clamp(0, 0xffff) as u16;
+                let (first, lanes, enter) = (at as u32, ways.lanes.len() as u32, enter as u16);
+                ways.tracks.push(Track { first, lanes, enter, slots });
+                let page = |slot: i32| page_of(index, slot, tables.info.slots).1;
+                let pages = page(i32::from(enter) + i32::from(slots)) - page(enter.into()) + 1;
+                ways.lanes.resize(ways.lanes.len() + pages, 0);
+                at += u64::from(slots) + 1;
             }
         }
+        ways.number_lanes(tables, index);
         let (crossings, cycles) = tables.identities.parts();
         gait.validate(at, crossings.len(), cycles.len())?;
         if !gait.table.prints.is_empty() {
             ways.link(tables, first_crossing);
         }
         Ok(ways)
+    }
+
+    /// Notes who is which lane.
+    fn number_lanes(&mut self, tables: &Tables, index: &rows::Index) {
+        let kinds = tables.kinds();
+        let mut begin = 0;
+        for (at, &end) in tables.lane_ends.iter().enumerate() {
+            let (page, kind) = (at / kinds, at % kinds);
+            for (number, &lane) in tables.lanes[begin..end as usize].iter().enumerate() {
+                let walker = self.first_walker[kind] as usize + Lane(lane).walker();
+                let Track { lanes, enter, .. } = self.tracks[walker];
+                let end = self.tracks.get(walker + 1).map_or(self.lanes.len(), |next| next.lanes as usize);
+                let on = page + tables.pages() * Lane(lane).lap() as usize;
+                let since = on.checked_sub(page_of(index, enter.into(), tables.info.slots).1);
+                // A lane in which nobody ever is has no number.
+                let known = since.and_then(|since| self.lanes[lanes as usize..end].get_mut(since));
+                known.into_iter().for_each(|known| *known = number as u16);
+            }
+            begin = end as usize;
+        }
     }
 
     /// Finds who goes where: stays follow each other without a gap.
@@ -118,27 +148,16 @@ impl Ways {
     #[inline]
     pub fn stay(&self, world: &World, instance: usize, walker: usize) -> Stay {
         let kind = world.kind_of(instance);
-        let Track { first, enter, slots } = self.tracks[self.first_walker[kind] as usize + walker];
+        let Track { first, lanes, enter, slots } = self.tracks[self.first_walker[kind] as usize + walker];
         let crossing = world.first_crossing[instance] as usize + walker;
         let of = |gait: &Gait| {
             let cycle = world.tables.identities.cycle(crossing);
             (gait.crossing_phases[crossing], gait.cycle_paces[cycle as usize])
         };
         let (phase, pace) = world.tables.gait.as_ref().map_or((0.0, 1.0), of);
-        let (kind, walker, crossing) = (kind as u32, walker as u32, crossing as u32);
+        let (kind, crossing) = (kind as u32, crossing as u32);
         let (slots, enter) = (i32::from(slots), i32::from(enter));
-        Stay {
-            kind,
-            walker,
-            crossing,
-            first,
-            slots,
-            enter,
-            origin: Vec2::ZERO,
-            turn: world.turn(instance),
-            phase,
-            pace,
-        }
+        Stay { kind, crossing, first, lanes, slots, enter, origin: Vec2::ZERO, turn: world.turn(instance), phase, pace }
     }
 
     /// The stay before (`side` 0) or after (1) a stay, seen from the same patch.
@@ -165,8 +184,20 @@ impl Ways {
     }
 
     pub fn bytes(&self) -> usize {
-        4 * self.first_walker.len() + 8 * (self.tracks.len() + self.links.len())
+        4 * self.first_walker.len() + 12 * self.tracks.len() + 2 * self.lanes.len() + 8 * self.links.len()
     }
+}
+
+/// Slot of its period, and page counted from the period's begin, of a slot counted from there.
+#[inline]
+fn page_of(index: &rows::Index, mut slot: i32, slots: u32) -> (usize, usize) {
+    let (slots, mut pages) = (slots as i32, 0);
+    // Hardly anybody stays for more than two periods.
+    while slot >= slots {
+        slot -= slots;
+        pages += index.page_of(slots as usize - 1) + 1;
+    }
+    (slot as usize, pages + index.page_of(slot as usize))
 }
 
 impl Stay {
@@ -181,13 +212,34 @@ impl Stay {
     #[inline]
     /// Its phase, counted on from that which it came in with.
     pub fn phase(&self, gait: &Gait, slot: i32, share: f32) -> f32 {
-        self.phase + self.steps(gait, slot, share) / STEPS_PER_CYCLE * self.pace
+        let (from, to) = between(self.steps(gait), slot);
+        self.phase + (from + (to - from) * share) / STEPS_PER_CYCLE * self.pace
     }
 
+    /// Its steps at the begin of every slot, and at its end.
     #[inline]
-    fn steps(&self, gait: &Gait, slot: i32, share: f32) -> f32 {
-        let at = (self.first as i32 + slot) as usize;
-        mixed(gait.steps[at], gait.steps[at + 1], share)
+    fn steps<'a>(&self, gait: &'a Gait) -> &'a [i16] {
+        &gait.steps[self.first as usize..][..=self.slots as usize]
+    }
+}
+
+/// Steps at the begin and at the end of a slot.
+#[inline]
+fn between(steps: &[i16], slot: i32) -> (f32, f32) {
+    (f32::from(steps[slot as usize]), f32::from(steps[slot as usize + 1]))
+}
+
+/// The slot in which steps are `target`, sought from one on; or that it is before (-1) or after (1) all of them.
+#[inline]
+fn within(steps: &[i16], mut slot: i32, target: f32) -> (i32, i32) {
+    let last = steps.len() as i32 - 2;
+    loop {
+        let (from, to) = between(steps, slot);
+        let side = i32::from(target > to) - i32::from(target < from);
+        if side == 0 || !(0..=last).contains(&(slot + side)) {
+            return (slot, side);
+        }
+        slot += side;
     }
 }
 
@@ -204,53 +256,59 @@ impl World {
 
     /// How whoever is in slot number `slot` of a `stay` is `cycles` of two steps later (earlier if negative).
     pub(super) fn later(&self, gait: &Gait, stay: &Stay, (slot, share): (i32, f32), cycles: f32) -> Instant {
-        let target = stay.steps(gait, slot, share) + cycles * STEPS_PER_CYCLE / stay.pace;
-        let (mut stay, mut slot, mut target) = (*stay, slot, target);
+        let steps = stay.steps(gait);
+        let (from, to) = between(steps, slot);
+        let now = from + (to - from) * share;
+        let target = now + cycles * STEPS_PER_CYCLE / stay.pace;
+        // About where it is. Downwards, as slots are.
+        let guess = slot + ((target - from) / (to - from).max(1.0) + 64.0) as i32 - 64;
+        match within(steps, guess.clamp(0, stay.slots - 1), target) {
+            (slot, 0) => self.instant(gait, stay, slot, target),
+            (_, side) => self.beyond(gait, *stay, side, target),
+        }
+    }
+
+    /// The same, when it is before (`side` -1) or after (1) the stay.
+    fn beyond(&self, gait: &Gait, mut stay: Stay, mut side: i32, mut target: f32) -> Instant {
+        let mut slot = if side < 0 { 0 } else { stay.slots - 1 };
         for _ in 0..FAR {
-            let at = (stay.first as i32 + slot) as usize;
-            let side = usize::from(target > f32::from(gait.steps[at + 1]));
-            if side == 0 && target >= f32::from(gait.steps[at]) {
+            let Some(next) = self.ways.neighbour(self, &stay, usize::from(side > 0)) else { break };
+            let whole = if side > 0 { stay } else { next };
+            let taken = f32::from(gait.steps[(whole.first as i32 + whole.slots) as usize]);
+            target += if side > 0 { -taken } else { taken };
+            stay = next;
+            (slot, side) = within(stay.steps(gait), if side > 0 { 0 } else { stay.slots - 1 }, target);
+            if side == 0 {
                 break;
             }
-            let on = if side == 1 { slot + 1 } else { slot - 1 };
-            if (0..stay.slots).contains(&on) {
-                slot = on;
-                continue;
-            }
-            let Some(next) = self.ways.neighbour(self, &stay, side) else { break };
-            let whole = if side == 1 { stay } else { next };
-            let taken = f32::from(gait.steps[(whole.first as i32 + whole.slots) as usize]);
-            target += if side == 1 { -taken } else { taken };
-            slot = if side == 1 { 0 } else { next.slots - 1 };
-            stay = next;
         }
-        let at = (stay.first as i32 + slot) as usize;
-        let (from, to) = (f32::from(gait.steps[at]), f32::from(gait.steps[at + 1]));
-        self.instant(gait, &stay, slot, (target - from) / (to - from).max(1.0))
+        self.instant(gait, &stay, slot, target)
     }
 
     #[inline]
-    /// How somebody is at a share of a slot of its stay; straight on, before and after what is known of it.
-    fn instant(&self, gait: &Gait, stay: &Stay, slot: i32, share: f32) -> Instant {
+    /// How somebody is in a slot of its stay when its steps are `target`; straight on, before and after what is known of it.
+    fn instant(&self, gait: &Gait, stay: &Stay, slot: i32, target: f32) -> Instant {
+        let (from, to) = between(stay.steps(gait), slot);
+        let share = (target - from) / (to - from).max(1.0);
         let (inside, slots) = (share.clamp(0.0, 1.0), self.info().slots);
-        let (own, heading) = ((stay.enter + slot) as u32, stay.heading(gait, slot, inside));
-        let lane = Lane(stay.walker | (own / slots) << 16);
-        let (sin, cos) = heading.sin_cos();
+        let (sin, cos) = sin_cos(stay.heading(gait, slot, inside));
         let ahead = Vec2::new(sin, cos);
-        let found = self.rows.find(&self.tables, stay.kind as usize, (own % slots) as usize, lane);
-        let Some([at, behind, stride]) = found else {
-            return Instant { place: stay.origin, speed: 0.0, ahead };
-        };
+        let (own, page) = page_of(&self.rows, stay.enter + slot, slots);
+        let since = page - page_of(&self.rows, stay.enter, slots).1;
+        let number = self.ways.lanes[stay.lanes as usize + since];
+        let at = self.rows.find(&self.tables, stay.kind as usize, own, number.into());
+        let (knots, unit) = (rows::four_knots(&self.tables, at), self.info().metres_per_unit);
         let (place, velocity) = weights(inside);
-        let rows = &self.tables.rows;
-        let knot = |at: usize| Vec2::new(f32::from(rows[at]), f32::from(rows[at + behind]));
-        let knots = [knot(at), knot(at + stride), knot(at + 2 * stride), knot(at + 3 * stride)];
-        let unit = self.info().metres_per_unit;
-        let weighed = |w: [f32; 4]| (knots[0] * w[0] + knots[1] * w[1] + knots[2] * w[2] + knots[3] * w[3]) * unit;
-        let velocity = weighed(velocity);
-        let place = weighed(place) + velocity * (share - inside);
+        let velocity = rows::weigh(&knots, &velocity) * unit;
+        let place = rows::weigh(&knots, &place) * unit + velocity * (share - inside);
         let speed = velocity.length() * (slots as f32 / self.info().period_secs);
-        let place = if stay.turn == 0.0 { place } else { Vec2::from_angle(stay.turn).rotate(place) };
+        let place = if stay.turn == 0.0 { place } else { turned(place, stay.turn) };
         Instant { place: place + stay.origin, speed, ahead }
     }
+}
+
+/// Turned so that the x axis points along the angle's (cos, sin).
+fn turned(place: Vec2, angle: f32) -> Vec2 {
+    let (sin, cos) = sin_cos(angle);
+    Vec2::new(cos, sin).rotate(place)
 }
