@@ -9,7 +9,7 @@ const ROUNDING: f32 = 12_582_912.0;
 
 /// Sine and cosine of an angle of at most some thousand radians, to 2e-7 near zero; polynomials of the Cephes library on an eighth
 /// of a turn to both sides of the nearest quarter.
-#[inline]
+#[inline(always)]
 pub(crate) fn sin_cos(angle: f32) -> (f32, f32) {
     let quarters = (angle * FRAC_2_PI + ROUNDING) - ROUNDING;
     let r = (angle - quarters * QUARTER[0]) - quarters * QUARTER[1];

@@ -188,7 +188,7 @@ impl Index {
     }
 
     /// Place and velocity of the `lane`-th of those present in a slot of a kind.
-    #[inline]
+    #[inline(always)]
     pub fn lane(&self, tables: &Tables, kind: usize, lane: usize, moment: &Moment) -> (Vec2, Vec2) {
         let slot = moment.slot as usize;
         let run = self.runs[slot * tables.kinds() + kind];
@@ -209,14 +209,14 @@ impl Index {
     }
 
     /// Which page a slot is in.
-    #[inline]
+    #[inline(always)]
     pub fn page_of(&self, slot: usize) -> usize {
         self.slots[slot].page as usize
     }
 
     /// Where the control points of a kind's lane number `number` (in its page) are in a slot: its x in the first of four rows, how
     /// far behind its z is, and from row to row.
-    #[inline]
+    #[inline(always)]
     pub fn find(&self, tables: &Tables, kind: usize, slot: usize, number: usize) -> [usize; 3] {
         let Slot { begin, row, page } = self.slots[slot];
         let index = page as usize * tables.kinds() + kind;
@@ -233,14 +233,14 @@ impl Index {
 }
 
 /// The four control points of a lane: where its x is in the first of four rows, how far behind its z is, and from row to row.
-#[inline]
+#[inline(always)]
 pub(super) fn four_knots(tables: &Tables, [at, behind, stride]: [usize; 3]) -> [Vec2; 4] {
     let knot = |at: usize| Vec2::new(f32::from(tables.rows[at]), f32::from(tables.rows[at + behind]));
     [knot(at), knot(at + stride), knot(at + 2 * stride), knot(at + 3 * stride)]
 }
 
 /// Their weighted sum.
-#[inline]
+#[inline(always)]
 pub(super) fn weigh(knots: &[Vec2; 4], w: &[f32; 4]) -> Vec2 {
     knots[0] * w[0] + knots[1] * w[1] + knots[2] * w[2] + knots[3] * w[3]
 }

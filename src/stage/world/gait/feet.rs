@@ -32,7 +32,7 @@ const SMALL_STEP: (f32, f32) = (0.25, 0.03);
 
 impl GaitTable {
     /// How far the feet are between their footprints, each from the middle of its own stance on (0 to 1).
-    #[inline]
+    #[inline(always)]
     fn swing(&self, (low, fast): (usize, f32), foot: usize, since: f32) -> Swing {
         let at = since * self.phases as f32;
         let first = (at as usize).min(self.phases - 1);
@@ -46,7 +46,7 @@ impl GaitTable {
     }
 
     /// Where a foot stands in the middle of its stance.
-    #[inline]
+    #[inline(always)]
     fn print(&self, foot: usize, at: &Instant) -> Vec2 {
         let (low, fast) = self.between(at.speed);
         let own = self.prints[low][foot].lerp(self.prints[low + 1][foot], fast);
@@ -56,7 +56,7 @@ impl GaitTable {
 }
 
 impl Swing {
-    #[inline]
+    #[inline(always)]
     fn towards(self, other: Self, share: f32) -> Self {
         Self {
             share: self.share + (other.share - self.share) * share,
@@ -67,32 +67,46 @@ impl Swing {
 
 impl World {
     /// Where the feet of a `body` are, who is in slot `at` of its `stay`; `None` if the table knows no footprints.
+    #[inline(always)]
     pub(super) fn feet(&self, gait: &Gait, stay: &Stay, at: (i32, f32), body: &Walking) -> Option<[Foot; 2]> {
-        let table = &gait.table;
-        if table.prints.is_empty() {
+        if gait.table.prints.is_empty() {
             return None;
         }
-        let between = table.between(body.velocity.length());
-        let foot = |foot: usize| {
-            let since = body.phase - 0.5 * foot as f32;
-            let since = if since < 0.0 { since + 1.0 } else { since };
-            let swing = table.swing(between, foot, since);
-            // Whoever stands on a footprint needs to know that one alone.
-            let print = |cycles: f32| {
-                let then = self.later(gait, stay, at, cycles);
-                (table.print(foot, &then) - body.place, then.ahead)
-            };
-            if swing.share <= 0.0 || swing.share >= 1.0 {
-                let (place, ahead) = print(if swing.share <= 0.0 { -since } else { 1.0 - since });
-                return Foot { ball: Vec3::new(place.x, swing.height, place.y), ahead };
-            }
-            let ((a, b), slow) =
-                ((print(-since), print(1.0 - since)), if between.0 == 0 { 1.0 - between.1 } else { 0.0 });
-            let small = (a.0.distance(b.0) + 0.1 * a.1.distance(b.1)) * SMALL_STEP.0;
-            let lift = small.min(SMALL_STEP.1) * slow * 4.0 * swing.share * (1.0 - swing.share);
-            let place = a.0.lerp(b.0, swing.share);
-            Foot { ball: Vec3::new(place.x, swing.height + lift, place.y), ahead: a.1.lerp(b.1, swing.share) }
-        };
-        Some([foot(0), foot(1)])
+        let fast = gait.table.between(body.velocity.length());
+        Some([self.foot(gait, stay, at, body, fast, 0), self.foot(gait, stay, at, body, fast, 1)])
+    }
+
+    #[inline(always)]
+    fn foot(
+        &self,
+        gait: &Gait,
+        stay: &Stay,
+        at: (i32, f32),
+        body: &Walking,
+        (low, fast): (usize, f32),
+        foot: usize,
+    ) -> Foot {
+        let since = body.phase - 0.5 * foot as f32;
+        let since = if since < 0.0 { since + 1.0 } else { since };
+        let Swing { share, height } = gait.table.swing((low, fast), foot, since);
+        // Whoever stands on a footprint needs to know that one alone.
+        let near = self.footprint(gait, stay, at, if share >= 1.0 { 1.0 - since } else { -since }, foot);
+        if share <= 0.0 || share >= 1.0 {
+            let place = near.0 - body.place;
+            return Foot { ball: Vec3::new(place.x, height, place.y), ahead: near.1 };
+        }
+        let next = self.footprint(gait, stay, at, 1.0 - since, foot);
+        let small = (near.0.distance(next.0) + 0.1 * near.1.distance(next.1)) * SMALL_STEP.0;
+        let slow = if low == 0 { 1.0 - fast } else { 0.0 };
+        let lift = small.min(SMALL_STEP.1) * slow * 4.0 * share * (1.0 - share);
+        let place = near.0.lerp(next.0, share) - body.place;
+        Foot { ball: Vec3::new(place.x, height + lift, place.y), ahead: near.1.lerp(next.1, share) }
+    }
+
+    /// Where a foot stands `cycles` of two steps later, and where it looks.
+    #[inline(always)]
+    fn footprint(&self, gait: &Gait, stay: &Stay, at: (i32, f32), cycles: f32, foot: usize) -> (Vec2, Vec2) {
+        let then = self.later(gait, stay, at, cycles);
+        (gait.table.print(foot, &then), then.ahead)
     }
 }

@@ -34,14 +34,15 @@ struct Bones {
 }
 
 impl Bones {
-    #[inline]
+    #[inline(always)]
     fn of(joints: &[Joint], up: usize) -> Self {
-        let [hip, knee, ankle, ball] = std::array::from_fn(|i| joints[up + i].offset);
+        let [hip, knee, ankle, ball] =
+            [&joints[up], &joints[up + 1], &joints[up + 2], &joints[up + 3]].map(|j| j.offset);
         Self { hip, thigh: -knee.y, shin: -ankle.y, foot: ball, toes: joints[up + 3].tip.unwrap_or(Vec3::ZERO) }
     }
 
     /// From hip to ankle, as far as that may be.
-    #[inline]
+    #[inline(always)]
     fn reach(&self) -> f32 {
         (self.thigh + self.shin) * STRETCH
     }
@@ -65,11 +66,14 @@ struct Leg {
 
 /// Leads the legs of a `pose` (its hips turned in the world, at `root`) to the `feet`; returns by how much the hips come down.
 /// `facing` is where the body looks, as x and z.
-#[inline]
+#[inline(always)]
 pub(super) fn lead(pose: &mut [Quat; JOINT_COUNT], root: Vec3, facing: Vec2, feet: &[Foot; 2]) -> f32 {
     let joints = &canonical().joints;
-    let leg = |up: usize, foot: &Foot| Leg::new(pose, Bones::of(joints, up), root, facing, up, foot);
-    let mut legs = [leg(joint::LEFT_UP_LEG, &feet[0]), leg(joint::RIGHT_UP_LEG, &feet[1])];
+    let [left, right] = [joint::LEFT_UP_LEG, joint::RIGHT_UP_LEG];
+    let mut legs = [
+        Leg::new(pose, Bones::of(joints, left), root, facing, left, &feet[0]),
+        Leg::new(pose, Bones::of(joints, right), root, facing, right, &feet[1]),
+    ];
     let lowering = eased(legs[0].lowering().max(legs[1].lowering())).min(LOWERING);
     for leg in &mut legs {
         leg.hip.y -= lowering;
@@ -81,13 +85,14 @@ pub(super) fn lead(pose: &mut [Quat; JOINT_COUNT], root: Vec3, facing: Vec2, fee
 }
 
 /// `need` where it is large, 0 where there is none, without an edge.
+#[inline(always)]
 fn eased(need: f32) -> f32 {
     let over = (need + EASE).max(0.0);
     if need > EASE { need } else { over * over / (4.0 * EASE) }
 }
 
 impl Leg {
-    #[inline]
+    #[inline(always)]
     fn new(pose: &[Quat; JOINT_COUNT], bones: Bones, root: Vec3, facing: Vec2, up: usize, foot: &Foot) -> Self {
         let thigh = pose[0] * pose[up];
         let shin = thigh * pose[up + 1];
@@ -103,8 +108,8 @@ impl Leg {
         Self { up, bones, hip, knee, ankle, turns, ball, foot: turned, target }
     }
 
-    #[inline]
     /// How far the hips should come down for the foot to be in reach; negative where it is nearer than that.
+    #[inline(always)]
     fn lowering(&self) -> f32 {
         let reach = self.bones.reach();
         let across = (self.target - self.hip).with_y(0.0).length_squared();
@@ -112,7 +117,7 @@ impl Leg {
     }
 
     /// Turns the foot about its ball until the ankle is in reach, as far as it goes.
-    #[inline]
+    #[inline(always)]
     fn lift_heel(&mut self) {
         let reach = self.bones.reach();
         if self.target.distance_squared(self.hip) > reach * reach {
@@ -131,7 +136,7 @@ impl Leg {
         self.target = self.ball - self.foot * self.bones.foot;
     }
 
-    #[inline]
+    #[inline(always)]
     fn bend(&mut self, pose: &mut [Quat; JOINT_COUNT]) {
         let flat = self.foot;
         self.lift_heel();
@@ -147,7 +152,7 @@ impl Leg {
 
     /// Rotations of thigh and shin that bring the ankle to its target: the knee opens or closes about its hinge, then all of the leg
     /// swings. A few square roots and nothing else: this runs for everybody in every frame.
-    #[inline]
+    #[inline(always)]
     fn reached(&self) -> [Quat; 2] {
         let (thigh, shin, way) = (self.knee - self.hip, self.ankle - self.knee, self.target - self.hip);
         let (a, b) = (self.bones.thigh, self.bones.shin);
@@ -172,8 +177,8 @@ impl Leg {
         ]
     }
 
-    #[inline]
     /// How the toes are turned: as they were, but not into the floor.
+    #[inline(always)]
     fn toes(&self) -> Quat {
         let (turn, lowest) = (self.turns[3], -TOES - self.ball.y);
         if height(turn).dot(self.bones.toes) >= lowest {
@@ -201,27 +206,27 @@ struct Opening {
 
 impl Opening {
     /// From one angle to another, given as cosines and sines times lengths whose product is `whole`.
-    #[inline]
+    #[inline(always)]
     fn new([from, from_sine]: [f32; 2], [to, to_sine]: [f32; 2], whole: f32) -> Self {
         let scale = 1.0 / whole.max(1e-12);
         Self { cosine: (from * to + from_sine * to_sine) * scale, sine: (to_sine * from - to * from_sine) * scale }
     }
 
     /// A direction at right angles to the hinge, turned.
-    #[inline]
+    #[inline(always)]
     fn turned(&self, hinge: Vec3, direction: Vec3) -> Vec3 {
         direction * self.cosine + hinge.cross(direction) * self.sine
     }
 
     /// As a rotation; not as long as one.
-    #[inline]
+    #[inline(always)]
     fn rotation(&self, hinge: Vec3) -> Quat {
         Quat::from_vec4((hinge * self.sine).extend(1.0 + self.cosine))
     }
 }
 
 /// `rotation`, turned about the vertical from where its body looks to where its foot looks.
-#[inline]
+#[inline(always)]
 fn aside(facing: Vec2, ahead: Vec2, rotation: Quat) -> Quat {
     let (sine, cosine) = (ahead.x * facing.y - ahead.y * facing.x, ahead.dot(facing));
     // Of half the angle. A foot that looked straight back would be on the wrong leg.
@@ -230,20 +235,20 @@ fn aside(facing: Vec2, ahead: Vec2, rotation: Quat) -> Quat {
 }
 
 /// `rotation`, then a turn about the vertical of which cosine and sine of half the angle are given.
-#[inline]
+#[inline(always)]
 pub(super) fn about_vertical(half: Vec2, rotation: Quat) -> Quat {
     let ((c, s), [x, y, z, w]) = ((half.x, half.y), rotation.to_array());
     Quat::from_xyzw(c * x + s * z, c * y + s * w, c * z - s * x, c * w - s * y)
 }
 
 /// Where a rotation leads the y axis to.
-#[inline]
+#[inline(always)]
 fn upward(q: Quat) -> Vec3 {
     Vec3::new(2.0 * (q.x * q.y - q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z + q.w * q.x))
 }
 
 /// How high a rotation leads each of the axes.
-#[inline]
+#[inline(always)]
 fn height(q: Quat) -> Vec3 {
     Vec3::new(2.0 * (q.x * q.y + q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z - q.w * q.x))
 }

@@ -99,6 +99,7 @@ impl GaitTable {
     }
 
     /// The cycle below a speed, and how far to the next.
+    #[inline(always)]
     fn between(&self, speed: f32) -> (usize, f32) {
         let last = self.speeds.len() - 2;
         let mut low = 0;
@@ -110,6 +111,7 @@ impl GaitTable {
     }
 
     /// The pose at a speed and phase, and the hips relative to where somebody is. No allocation.
+    #[inline(always)]
     pub fn pose(&self, speed: f32, phase: f32, pose: &mut [Quat; JOINT_COUNT]) -> Vec3 {
         let (low, fast) = self.between(speed);
         let at = phase.clamp(0.0, 1.0) * self.phases as f32;
@@ -162,6 +164,14 @@ impl GaitTable {
 impl Walking {
     /// Root and rotations of the canonical skeleton for this body, in the frame of its place. No allocation.
     pub fn pose(&self, table: &GaitTable, pose: &mut [Quat; JOINT_COUNT]) -> Vec3 {
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || self.pose_in(table, pose),
+        )
+    }
+
+    #[inline(always)]
+    fn pose_in(&self, table: &GaitTable, pose: &mut [Quat; JOINT_COUNT]) -> Vec3 {
         let hips = table.pose(self.velocity.length(), self.phase, pose);
         let (half_sin, half_cos) = sin_cos(0.5 * self.heading);
         let facing = Vec2::new(2.0 * half_sin * half_cos, half_cos * half_cos - half_sin * half_sin);
@@ -210,20 +220,22 @@ impl World {
         let kind = self.kind_of(instance);
         let rotation = Vec2::from_angle(self.turn(instance));
         let lanes = self.rows.lanes(&self.tables, kind, own.slot);
+        let slots = i64::from(self.info().slots);
+        let simd = pulp::Arch::new();
         lanes.enumerate().filter_map(move |(index, lane)| {
             let gait = self.tables.gait.as_ref()?;
-            let (place, velocity) = self.rows.lane(&self.tables, kind, index, &own);
-            let stay = self.ways.stay(self, instance, lane.walker());
-            let slot = (i64::from(own.slot) + lane.lap() * i64::from(self.info().slots)) as i32 - stay.enter;
-            let heading = stay.heading(gait, slot, fraction);
-            let body = Walking {
-                place: rotation.rotate(place),
-                velocity: rotation.rotate(velocity),
-                heading,
-                phase: fraction_of(stay.phase(gait, slot, fraction)),
-                feet: None,
-            };
-            Some(Walking { feet: self.feet(gait, &stay, (slot, fraction), &body), ..body })
+            Some(simd.dispatch(
+                #[inline(always)]
+                || {
+                    let (place, velocity) = self.rows.lane(&self.tables, kind, index, &own);
+                    let stay = self.ways.stay(self, instance, lane.walker());
+                    let at = ((i64::from(own.slot) + lane.lap() * slots) as i32 - stay.enter, fraction);
+                    let (place, velocity) = (rotation.rotate(place), rotation.rotate(velocity));
+                    let (heading, phase) = (stay.heading(gait, at.0, at.1), fraction_of(stay.phase(gait, at.0, at.1)));
+                    let body = Walking { place, velocity, heading, phase, feet: None };
+                    Walking { feet: self.feet(gait, &stay, at, &body), ..body }
+                },
+            ))
         })
     }
 }

@@ -145,7 +145,7 @@ impl Ways {
     }
 
     /// The stay of a walker of an instance, seen from there.
-    #[inline]
+    #[inline(always)]
     pub fn stay(&self, world: &World, instance: usize, walker: usize) -> Stay {
         let kind = world.kind_of(instance);
         let Track { first, lanes, enter, slots } = self.tracks[self.first_walker[kind] as usize + walker];
@@ -189,7 +189,7 @@ impl Ways {
 }
 
 /// Slot of its period, and page counted from the period's begin, of a slot counted from there.
-#[inline]
+#[inline(always)]
 fn page_of(index: &rows::Index, mut slot: i32, slots: u32) -> (usize, usize) {
     let (slots, mut pages) = (slots as i32, 0);
     // Hardly anybody stays for more than two periods.
@@ -201,36 +201,36 @@ fn page_of(index: &rows::Index, mut slot: i32, slots: u32) -> (usize, usize) {
 }
 
 impl Stay {
-    #[inline]
     /// Where it looks, radians, in slot number `slot` of the stay.
+    #[inline(always)]
     pub fn heading(&self, gait: &Gait, slot: i32, share: f32) -> f32 {
         let at = (self.first as i32 + slot) as usize;
         let (from, to) = (gait.headings[at], gait.headings[at + 1]);
         (f32::from(from) + f32::from(to.wrapping_sub(from)) * share) / PER_RADIAN - self.turn
     }
 
-    #[inline]
     /// Its phase, counted on from that which it came in with.
+    #[inline(always)]
     pub fn phase(&self, gait: &Gait, slot: i32, share: f32) -> f32 {
         let (from, to) = between(self.steps(gait), slot);
         self.phase + (from + (to - from) * share) / STEPS_PER_CYCLE * self.pace
     }
 
     /// Its steps at the begin of every slot, and at its end.
-    #[inline]
+    #[inline(always)]
     fn steps<'a>(&self, gait: &'a Gait) -> &'a [i16] {
         &gait.steps[self.first as usize..][..=self.slots as usize]
     }
 }
 
 /// Steps at the begin and at the end of a slot.
-#[inline]
+#[inline(always)]
 fn between(steps: &[i16], slot: i32) -> (f32, f32) {
     (f32::from(steps[slot as usize]), f32::from(steps[slot as usize + 1]))
 }
 
 /// The slot in which steps are `target`, sought from one on; or that it is before (-1) or after (1) all of them.
-#[inline]
+#[inline(always)]
 fn within(steps: &[i16], mut slot: i32, target: f32) -> (i32, i32) {
     let last = steps.len() as i32 - 2;
     loop {
@@ -255,6 +255,7 @@ impl World {
     }
 
     /// How whoever is in slot number `slot` of a `stay` is `cycles` of two steps later (earlier if negative).
+    #[inline(always)]
     pub(super) fn later(&self, gait: &Gait, stay: &Stay, (slot, share): (i32, f32), cycles: f32) -> Instant {
         let steps = stay.steps(gait);
         let (from, to) = between(steps, slot);
@@ -269,6 +270,7 @@ impl World {
     }
 
     /// The same, when it is before (`side` -1) or after (1) the stay.
+    #[inline(never)]
     fn beyond(&self, gait: &Gait, mut stay: Stay, mut side: i32, mut target: f32) -> Instant {
         let mut slot = if side < 0 { 0 } else { stay.slots - 1 };
         for _ in 0..FAR {
@@ -285,8 +287,8 @@ impl World {
         self.instant(gait, &stay, slot, target)
     }
 
-    #[inline]
     /// How somebody is in a slot of its stay when its steps are `target`; straight on, before and after what is known of it.
+    #[inline(always)]
     fn instant(&self, gait: &Gait, stay: &Stay, slot: i32, target: f32) -> Instant {
         let (from, to) = between(stay.steps(gait), slot);
         let share = (target - from) / (to - from).max(1.0);
@@ -308,6 +310,7 @@ impl World {
 }
 
 /// Turned so that the x axis points along the angle's (cos, sin).
+#[inline(always)]
 fn turned(place: Vec2, angle: f32) -> Vec2 {
     let (sin, cos) = sin_cos(angle);
     Vec2::new(cos, sin).rotate(place)
