@@ -3,7 +3,7 @@
 //! A leg that would have to be longer than it is does what people do: the hips come down a little, then the heel comes up
 //! while the ball of the foot stays. Toes do not go through the floor.
 
-use glam::{Quat, Vec2, Vec3};
+use glam::{Quat, Vec2, Vec3, Vec3A};
 
 use super::feet::Foot;
 use crate::motion::{JOINT_COUNT, Joint, canonical, joint};
@@ -26,19 +26,19 @@ const TOES: f32 = 0.005;
 /// The bones of a leg: those of thigh and shin hang straight down at rest.
 #[derive(Clone, Copy)]
 struct Bones {
-    hip: Vec3,
+    hip: Vec3A,
     thigh: f32,
     shin: f32,
-    foot: Vec3,
-    toes: Vec3,
+    foot: Vec3A,
+    toes: Vec3A,
 }
 
 impl Bones {
     #[inline(always)]
     fn of(joints: &[Joint], up: usize) -> Self {
-        let [hip, knee, ankle, ball] =
-            [&joints[up], &joints[up + 1], &joints[up + 2], &joints[up + 3]].map(|j| j.offset);
-        Self { hip, thigh: -knee.y, shin: -ankle.y, foot: ball, toes: joints[up + 3].tip.unwrap_or(Vec3::ZERO) }
+        let (hip, foot) = (joints[up].offset.into(), joints[up + 3].offset.into());
+        let (thigh, shin) = (-joints[up + 1].offset.y, -joints[up + 2].offset.y);
+        Self { hip, thigh, shin, foot, toes: joints[up + 3].tip.unwrap_or(Vec3::ZERO).into() }
     }
 
     /// From hip to ankle, as far as that may be.
@@ -52,16 +52,16 @@ impl Bones {
 struct Leg {
     up: usize,
     bones: Bones,
-    hip: Vec3,
-    knee: Vec3,
-    ankle: Vec3,
+    hip: Vec3A,
+    knee: Vec3A,
+    ankle: Vec3A,
     /// Rotations of thigh, shin, foot and toes.
     turns: [Quat; 4],
     /// Where the ball is to be, and how the foot is to be turned there.
-    ball: Vec3,
+    ball: Vec3A,
     foot: Quat,
     /// Where the ankle is then.
-    target: Vec3,
+    target: Vec3A,
 }
 
 /// Leads the legs of a `pose` (its hips turned in the world, at `root`) to the `feet`; returns by how much the hips come down.
@@ -71,8 +71,8 @@ pub(super) fn lead(pose: &mut [Quat; JOINT_COUNT], root: Vec3, facing: Vec2, fee
     let joints = &canonical().joints;
     let [left, right] = [joint::LEFT_UP_LEG, joint::RIGHT_UP_LEG];
     let mut legs = [
-        Leg::new(pose, Bones::of(joints, left), root, facing, left, &feet[0]),
-        Leg::new(pose, Bones::of(joints, right), root, facing, right, &feet[1]),
+        Leg::new(pose, Bones::of(joints, left), root.into(), facing, left, &feet[0]),
+        Leg::new(pose, Bones::of(joints, right), root.into(), facing, right, &feet[1]),
     ];
     let lowering = eased(legs[0].lowering().max(legs[1].lowering())).min(LOWERING);
     for leg in &mut legs {
@@ -93,15 +93,15 @@ fn eased(need: f32) -> f32 {
 
 impl Leg {
     #[inline(always)]
-    fn new(pose: &[Quat; JOINT_COUNT], bones: Bones, root: Vec3, facing: Vec2, up: usize, foot: &Foot) -> Self {
+    fn new(pose: &[Quat; JOINT_COUNT], bones: Bones, root: Vec3A, facing: Vec2, up: usize, foot: &Foot) -> Self {
         let thigh = pose[0] * pose[up];
         let shin = thigh * pose[up + 1];
         let own = shin * pose[up + 2];
         let hip = root + pose[0] * bones.hip;
-        let knee = hip - upward(thigh) * bones.thigh;
-        let ankle = knee - upward(shin) * bones.shin;
+        let knee = hip - thigh * Vec3A::Y * bones.thigh;
+        let ankle = knee - shin * Vec3A::Y * bones.shin;
         let turned = aside(facing, foot.ahead, own);
-        let (to_ball, mut ball) = (turned * bones.foot, foot.ball);
+        let (to_ball, mut ball) = (turned * bones.foot, Vec3A::from(foot.ball));
         // A heel that strikes the floor before the ball does not go through it.
         ball.y += (HEEL - (ball.y - to_ball.y)).max(0.0);
         let (turns, target) = ([thigh, shin, turned, turned * pose[up + 3]], ball - to_ball);
@@ -132,7 +132,7 @@ impl Leg {
         let cosine = (foot * foot + whole * whole - reach * reach) / (2.0 * foot * whole);
         let angle = (bone.angle_between(to_hip) - cosine.clamp(-1.0, 1.0).acos()).clamp(0.0, LIFT);
         let axis = bone.cross(to_hip).normalize_or_zero();
-        self.foot = Quat::from_axis_angle(if axis == Vec3::ZERO { Vec3::X } else { axis }, angle) * self.foot;
+        self.foot = Quat::from_axis_angle(if axis == Vec3A::ZERO { Vec3::X } else { axis.into() }, angle) * self.foot;
         self.target = self.ball - self.foot * self.bones.foot;
     }
 
@@ -165,7 +165,7 @@ impl Leg {
         let before = Triangle { area: cross.length(), hip: 0.5 * (a2 + now - b2), ankle: 0.5 * (b2 + now - a2) };
         let hip = 0.5 * (a2 + then - b2);
         let after = Triangle { area: (a2 * then - hip * hip).max(0.0).sqrt(), hip, ankle: 0.5 * (b2 + then - a2) };
-        let hinge = (cross + self.turns[0] * Vec3::X * (STRAIGHT * a * b)).normalize_or(Vec3::X);
+        let hinge = (cross + self.turns[0] * Vec3A::X * (STRAIGHT * a * b)).normalize_or(Vec3A::X);
         let whole = now.sqrt() * reach;
         let open = Opening::new([after.hip, after.area], [before.hip, before.area], a2 * whole);
         let close = Opening::new([before.ankle, before.area], [after.ankle, after.area], b2 * whole);
@@ -186,8 +186,8 @@ impl Leg {
         }
         let tip = turn * self.bones.toes;
         let slope = |y: f32| (y / tip.length()).clamp(-1.0, 1.0).asin();
-        let axis = tip.cross(Vec3::Y).try_normalize().unwrap_or(turn * Vec3::NEG_X);
-        Quat::from_axis_angle(axis, slope(lowest) - slope(tip.y)) * turn
+        let axis = tip.cross(Vec3A::Y).try_normalize().unwrap_or(turn * Vec3A::NEG_X);
+        Quat::from_axis_angle(axis.into(), slope(lowest) - slope(tip.y)) * turn
     }
 }
 
@@ -214,13 +214,13 @@ impl Opening {
 
     /// A direction at right angles to the hinge, turned.
     #[inline(always)]
-    fn turned(&self, hinge: Vec3, direction: Vec3) -> Vec3 {
+    fn turned(&self, hinge: Vec3A, direction: Vec3A) -> Vec3A {
         direction * self.cosine + hinge.cross(direction) * self.sine
     }
 
     /// As a rotation; not as long as one.
     #[inline(always)]
-    fn rotation(&self, hinge: Vec3) -> Quat {
+    fn rotation(&self, hinge: Vec3A) -> Quat {
         Quat::from_vec4((hinge * self.sine).extend(1.0 + self.cosine))
     }
 }
@@ -241,14 +241,8 @@ pub(super) fn about_vertical(half: Vec2, rotation: Quat) -> Quat {
     Quat::from_xyzw(c * x + s * z, c * y + s * w, c * z - s * x, c * w - s * y)
 }
 
-/// Where a rotation leads the y axis to.
-#[inline(always)]
-fn upward(q: Quat) -> Vec3 {
-    Vec3::new(2.0 * (q.x * q.y - q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z + q.w * q.x))
-}
-
 /// How high a rotation leads each of the axes.
 #[inline(always)]
-fn height(q: Quat) -> Vec3 {
-    Vec3::new(2.0 * (q.x * q.y + q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z - q.w * q.x))
+fn height(q: Quat) -> Vec3A {
+    Vec3A::new(2.0 * (q.x * q.y + q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z - q.w * q.x))
 }

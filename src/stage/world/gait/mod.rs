@@ -27,7 +27,7 @@ pub use feet::{Foot, Swing};
 pub(super) use walks::Ways;
 
 use super::tables::expect;
-use super::{Spot, World};
+use super::{Moment, Spot, World};
 use crate::Result;
 use crate::geom::sin_cos;
 use crate::motion::JOINT_COUNT;
@@ -101,11 +101,8 @@ impl GaitTable {
     /// The cycle below a speed, and how far to the next.
     #[inline(always)]
     fn between(&self, speed: f32) -> (usize, f32) {
-        let last = self.speeds.len() - 2;
-        let mut low = 0;
-        while low < last && self.speeds[low + 1] <= speed {
-            low += 1;
-        }
+        let inner = &self.speeds[1..self.speeds.len() - 1];
+        let low: usize = inner.iter().map(|&other| usize::from(other <= speed)).sum();
         let (a, b) = (self.speeds[low], self.speeds[low + 1]);
         (low, ((speed - a) / (b - a)).clamp(0.0, 1.0))
     }
@@ -123,10 +120,14 @@ impl GaitTable {
         let weights = [(1.0 - fast) * (1.0 - late), (1.0 - fast) * late, fast * (1.0 - late), fast * late];
         let row = |i: usize| &self.rotations[of[i] * JOINT_COUNT..(of[i] + 1) * JOINT_COUNT];
         let (a, b, c, d) = (row(0), row(1), row(2), row(3));
-        for (joint, out) in pose.iter_mut().enumerate() {
-            let sum = a[joint] * weights[0] + b[joint] * weights[1] + c[joint] * weights[2] + d[joint] * weights[3];
-            *out = sum.normalize();
+        let mut squares = [1.0_f32; JOINT_COUNT.next_multiple_of(8)];
+        for (joint, (out, square)) in pose.iter_mut().zip(&mut squares).enumerate() {
+            *out = a[joint] * weights[0] + b[joint] * weights[1] + c[joint] * weights[2] + d[joint] * weights[3];
+            *square = out.length_squared();
         }
+        // All roots at once.
+        squares.iter_mut().for_each(|square| *square = 1.0 / square.sqrt());
+        pose.iter_mut().zip(squares).for_each(|(out, scale)| *out = *out * scale);
         let hips = |i: usize| self.hips[of[i]] * weights[i];
         hips(0) + hips(1) + hips(2) + hips(3)
     }
@@ -164,10 +165,7 @@ impl GaitTable {
 impl Walking {
     /// Root and rotations of the canonical skeleton for this body, in the frame of its place. No allocation.
     pub fn pose(&self, table: &GaitTable, pose: &mut [Quat; JOINT_COUNT]) -> Vec3 {
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || self.pose_in(table, pose),
-        )
+        pulp::Arch::new().dispatch(Posing { body: self, table, pose })
     }
 
     #[inline(always)]
@@ -220,23 +218,60 @@ impl World {
         let kind = self.kind_of(instance);
         let rotation = Vec2::from_angle(self.turn(instance));
         let lanes = self.rows.lanes(&self.tables, kind, own.slot);
-        let slots = i64::from(self.info().slots);
         let simd = pulp::Arch::new();
         lanes.enumerate().filter_map(move |(index, lane)| {
             let gait = self.tables.gait.as_ref()?;
-            Some(simd.dispatch(
-                #[inline(always)]
-                || {
-                    let (place, velocity) = self.rows.lane(&self.tables, kind, index, &own);
-                    let stay = self.ways.stay(self, instance, lane.walker());
-                    let at = ((i64::from(own.slot) + lane.lap() * slots) as i32 - stay.enter, fraction);
-                    let (place, velocity) = (rotation.rotate(place), rotation.rotate(velocity));
-                    let (heading, phase) = (stay.heading(gait, at.0, at.1), fraction_of(stay.phase(gait, at.0, at.1)));
-                    let body = Walking { place, velocity, heading, phase, feet: None };
-                    Walking { feet: self.feet(gait, &stay, at, &body), ..body }
-                },
-            ))
+            let of = (index, lane.walker());
+            let lapped = own.slot as i32 + lane.lap() as i32 * self.info().slots as i32;
+            Some(simd.dispatch(Walk { world: self, gait, instance, kind, of, own, lapped, fraction, rotation }))
         })
+    }
+}
+
+/// The pose of a body, in the widest instructions there are.
+struct Posing<'a> {
+    body: &'a Walking,
+    table: &'a GaitTable,
+    pose: &'a mut [Quat; JOINT_COUNT],
+}
+
+impl pulp::NullaryFnOnce for Posing<'_> {
+    type Output = Vec3;
+
+    #[inline(always)]
+    fn call(self) -> Vec3 {
+        self.body.pose_in(self.table, self.pose)
+    }
+}
+
+/// The body of somebody present in a patch, likewise.
+struct Walk<'a> {
+    world: &'a World,
+    gait: &'a Gait,
+    instance: usize,
+    kind: usize,
+    /// Number among those present, and index of the walker.
+    of: (usize, usize),
+    own: Moment,
+    /// Slot, counted from the begin of the period it came in; and how far in it.
+    lapped: i32,
+    fraction: f32,
+    rotation: Vec2,
+}
+
+impl pulp::NullaryFnOnce for Walk<'_> {
+    type Output = Walking;
+
+    #[inline(always)]
+    fn call(self) -> Walking {
+        let Self { world, gait, instance, kind, of, own, lapped, fraction, rotation } = self;
+        let (place, velocity) = world.rows.lane(&world.tables, kind, of.0, &own);
+        let stay = world.ways.stay(world, instance, of.1);
+        let at = (lapped - stay.enter, fraction);
+        let (place, velocity) = (rotation.rotate(place), rotation.rotate(velocity));
+        let (heading, phase) = (stay.heading(gait, at.0, at.1), fraction_of(stay.phase(gait, at.0, at.1)));
+        let body = Walking { place, velocity, heading, phase, feet: None };
+        Walking { feet: world.feet(gait, &stay, at, &body), ..body }
     }
 }
 
