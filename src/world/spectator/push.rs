@@ -20,9 +20,6 @@ const MARGIN: f64 = 0.15;
 const CLEAR: f64 = 0.09;
 /// How much somebody minds touching, against a metre off its way.
 const TOUCH: f64 = 60.0;
-/// How much somebody minds an acceleration beyond that of walking, of way and push together, against a metre off its way: less than
-/// touching.
-const STRAIN: f64 = 6.0;
 /// Directions of pushes.
 const DIRECTIONS: usize = 12;
 /// Nobody further away than this, metres, is met within the time that counts.
@@ -41,8 +38,6 @@ pub(super) struct Body {
 struct Walker {
     stay: Stay,
     aside: Aside,
-    /// Acceleration of its way during the tick.
-    pull: DVec2,
     ways: [DVec2; AHEAD.len()],
     places: [DVec2; AHEAD.len()],
 }
@@ -55,16 +50,13 @@ struct Sight<'a> {
     walkers: Vec<Walker>,
     /// Of everybody's body.
     radius: f64,
-    /// Greatest acceleration of who walks, m/s2.
-    acceleration: f64,
 }
 
 /// Chooses everybody's push for the tick that begins at `secs`.
 pub(super) fn decide(world: &World, grounds: &mut Grounds, secs: f64, body: &Body, people: &mut BTreeMap<Stay, Aside>) {
     let walkers = people.iter().map(|(&stay, &aside)| Walker::new(world, grounds, stay, aside, secs)).collect();
     let radius = f64::from(world.info().limits.radius);
-    let acceleration = f64::from(world.info().limits.acceleration);
-    let mut sight = Sight { world, secs, body, walkers, radius, acceleration };
+    let mut sight = Sight { world, secs, body, walkers, radius };
     // Who is nearest has the least choice and goes first; the others know what it does.
     let mut order: Vec<usize> = (0..sight.walkers.len()).collect();
     let far = |me: usize| sight.walkers[me].ways[0].distance_squared(body.place);
@@ -83,7 +75,6 @@ impl Walker {
         let aside = Aside { push: DVec2::ZERO, ..aside };
         let (mut last, mut velocity, mut at) =
             way(world, stay, secs).map_or_else(Default::default, |(p, v)| (p, v, secs));
-        let pull = way(world, stay, secs + TICK).map_or(DVec2::ZERO, |(_, then)| (then - velocity) / TICK);
         let ways = AHEAD.map(|ahead| {
             // Beyond the border it goes straight on.
             let found = way(world, stay, secs + ahead);
@@ -91,7 +82,7 @@ impl Walker {
             (last, velocity, at) = (p, v, secs + ahead);
             p
         });
-        let mut walker = Self { stay, aside, pull, ways, places: ways };
+        let mut walker = Self { stay, aside, ways, places: ways };
         walker.places = std::array::from_fn(|i| walker.place(world, grounds, secs, i, DVec2::ZERO));
         walker
     }
@@ -136,8 +127,7 @@ impl Sight<'_> {
         let effort = 0.6 * end.offset.length_squared()
             + 0.35 * end.velocity.length_squared()
             + 0.04 * push.length_squared()
-            + TOUCH * far * far
-            + STRAIN * ((own.pull + push).length() - self.acceleration).max(0.0).powi(2);
+            + TOUCH * far * far;
         // What is far ahead may change.
         let weighed =
             AHEAD.iter().enumerate().map(|(i, ahead)| self.closeness(grounds, own, others, (i, push)) / (1.0 + ahead));
