@@ -22,7 +22,7 @@ use crate::world::{CrowdPatch, FramePatch, Limits, Path, Port, Walker};
 /// Hips are nowhere farther from the way, metres: whoever plays roots alone sees people where they are.
 const STRAY: f64 = 0.24;
 /// Tries with other seeds.
-const TRIES: u64 = 5;
+const TRIES: u64 = 3;
 
 /// What people do who meet in a patch.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
