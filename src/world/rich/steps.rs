@@ -58,7 +58,7 @@ impl Steps {
             let enough =
                 |air: &Range<f64>, whole: &Range<f64>| air.end - air.start >= STILL * (whole.end - whole.start);
             let first = airs().map(|air| (part(&air, enter, leave), air)).find(|(some, air)| enough(some, air));
-            let last = airs().map(|air| (part(&air, enter, leave), air)).filter(|(some, air)| enough(some, air)).last();
+            let last = airs().map(|air| (part(&air, enter, leave), air)).rfind(|(some, air)| enough(some, air));
             if let (Some((first, _)), Some((last, _))) = (first, last)
                 && first.end <= last.start
             {
