@@ -69,7 +69,7 @@ fn on(
     keep: Option<Keep>,
 ) -> crowdquilt::Result<Outcome> {
     let options = Options { seed: from.seed, time_secs, method: Method::Engine };
-    tile_in(Session { from: Some(from), keep }, scene, set, &options, &mut |_| true)
+    tile_in(Session { from: Some(from), keep, steps: None }, scene, set, &options, &mut |_| true)
 }
 
 /// What is kept of a run that goes on for no time at all.
@@ -198,7 +198,7 @@ fn another_set_and_other_scenes_are_refused() {
     let round = Scene { periodic: Periodic { t: true, ..Periodic::default() }, ..kept.scene.clone() };
     assert!(told(&plain_set(), &round).contains("comes round"));
     let paper = Options { method: Method::Paper, ..Options::default() };
-    let session = Session { from: Some(&kept), keep: None };
+    let session = Session { from: Some(&kept), ..Session::default() };
     assert!(
         tile_in(session, &kept.scene, &plain_set(), &paper, &mut |_| true).unwrap_err().to_string().contains("engine")
     );

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use crowdquilt::check::world::check_world;
-use crowdquilt::motion::{JOINT_COUNT, canonical};
+use crowdquilt::motion::{JOINT_COUNT, canonical, joint};
 use crowdquilt::patch::PatchSet;
 use crowdquilt::stage::World;
 use crowdquilt::stage::world::{Spot, UNITS_PER_METRE};
@@ -123,6 +123,45 @@ fn bodies_never_leap_and_are_the_same_after_hours() {
     println!("greatest step of a joint {leap:.3} m, drift after an hour {drift:.6} m, units of {UNITS_PER_METRE}");
     // 9 m/s: a foot that swings while walk and clip fade into each other.
     assert!(leap < 0.3 && drift < 2e-3, "{leap} {drift}");
+}
+
+/// Where walk and clip fade into each other a foot stands nearly always: the slower one's ball hardly moves.
+#[test]
+fn feet_stay_where_walk_and_clip_fade_into_each_other() {
+    let world = world();
+    let kinds: Vec<usize> = acting(world).into_iter().map(|a| a.0).collect();
+    let mut speeds = Vec::new();
+    for instance in (0..world.instances()).filter(|&i| kinds.contains(&world.kind_of(i))) {
+        for i in 0..600 {
+            let (time, step) = (f64::from(i) / 60.0, 1.0 / 60.0);
+            let next = bodies(world, instance, time + step);
+            for (who, joints) in bodies(world, instance, time) {
+                let kind = world.kind_of(instance);
+                let (Some((_, [_, enter, leave])), Some((_, then))) =
+                    (world.walker_act(kind, who.0), next.iter().find(|n| n.0 == who))
+                else {
+                    continue;
+                };
+                let slot = f64::from(world.info().period_secs) / f64::from(world.info().slots);
+                let own = time + f64::from(world.tables().instance_phases[instance]) * slot
+                    - who.1 as f64 * f64::from(world.info().period_secs);
+                if (own - enter).min(leave - own) < 1.0 && own > enter && own < leave {
+                    let speed = |toe: usize| joints[toe].distance(then[toe]) / step as f32;
+                    speeds.push(speed(joint::LEFT_TOE).min(speed(joint::RIGHT_TOE)));
+                }
+            }
+        }
+    }
+    speeds.sort_by(f32::total_cmp);
+    let at = |share: f32| speeds[(share * (speeds.len() - 1) as f32) as usize];
+    println!(
+        "slower foot in fades: median {:.3}, 90 % {:.3}, 99 % {:.3} m/s of {}",
+        at(0.5),
+        at(0.9),
+        at(0.99),
+        speeds.len()
+    );
+    assert!(at(0.5) < 0.03 && at(0.9) < 0.3, "{} {}", at(0.5), at(0.9));
 }
 
 /// Writes joints for a look from outside, if a folder is named.

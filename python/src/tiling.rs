@@ -338,7 +338,7 @@ pub fn tile(
         every_secs: checkpoint_every,
         patches: patches_name.as_deref(),
     });
-    let session = core::Session { from: resume.map(|kept| &kept.0), keep };
+    let session = core::Session { from: resume.map(|kept| &kept.0), keep, steps: None };
     let options = core::Options { method, seed, time_secs: time };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
     let pool = pool.map_err(|e| CrowdquiltError::new_err(format!("threads: {e}")))?;

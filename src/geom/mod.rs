@@ -1,6 +1,7 @@
-//! Transforms of the ground plane, polygons, obstacles, capsules, boxes, domains that repeat.
+//! Transforms of the ground plane, polygons, circles, obstacles, capsules, boxes, domains that repeat.
 
 mod capsule;
+mod circle;
 pub mod complex;
 mod cuboid;
 mod gate;
@@ -11,6 +12,7 @@ mod torus;
 mod trigonometry;
 
 pub use capsule::Capsule;
+pub use circle::{Disc, smallest_circle};
 pub use cuboid::{Cuboid, Upright};
 pub use gate::Gate;
 pub use ground::{Ground, Turn, wrap_angle};

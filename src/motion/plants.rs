@@ -62,7 +62,8 @@ pub fn speeds(points: &[Vec3], fps: f32) -> Vec<f32> {
     (0..points.len()).map(at).collect()
 }
 
-fn detect_foot(foot: Foot, ball: &[Vec3], options: &PlantOptions, out: &mut Vec<Plant>) {
+/// The plants of one foot, whose ball is at these places frame by frame, after those in `out`. O(frames).
+pub(crate) fn detect_foot(foot: Foot, ball: &[Vec3], options: &PlantOptions, out: &mut Vec<Plant>) {
     let speed = speeds(ball, FPS);
     let low = |i: usize| ball[i].y <= options.max_height;
     let may_last = |i: usize| low(i) && speed[i] < options.end_above;

@@ -20,6 +20,8 @@ pub(super) struct Clock<'a> {
     asked: Instant,
     step: f64,
     stopped: bool,
+    /// How often it may still be asked, if that is bounded.
+    left: Option<u64>,
     progress: &'a mut dyn FnMut(&Progress) -> bool,
 }
 
@@ -34,8 +36,14 @@ impl<'a> Clock<'a> {
             asked: now,
             step: 0.0,
             stopped: false,
+            left: None,
             progress,
         }
+    }
+
+    /// The same that is over after it was asked so often, if a number is given: work instead of time.
+    pub(super) fn asked_at_most(self, times: Option<u64>) -> Self {
+        Self { left: times, ..self }
     }
 
     /// False once time is up or the caller has had enough.
@@ -43,6 +51,7 @@ impl<'a> Clock<'a> {
         let now = Instant::now();
         self.step = (now - self.asked).as_secs_f64().max(self.step * STEPS_FADE);
         self.asked = now;
+        self.left = self.left.map(|left| left.saturating_sub(1));
         if !self.stopped && now - self.last_report >= REPORT_EVERY {
             self.last_report = now;
             let secs = self.secs();
@@ -53,7 +62,7 @@ impl<'a> Clock<'a> {
 
     /// True once time is up or the caller has had enough.
     pub(super) fn is_over(&self) -> bool {
-        self.stopped || self.secs() + self.step + self.reserve >= self.limit.as_secs_f64()
+        self.stopped || self.left == Some(0) || self.secs() + self.step + self.reserve >= self.limit.as_secs_f64()
     }
 
     /// Part of the time that has gone.

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::bake::{Chains, bake};
 use super::bridge::Taste;
-use super::checkpoint::{About, Agenda, Checkpoint, Keep, Keeper, Stage, thaw};
+use super::checkpoint::{About, Agenda, Keep, Keeper, Stage, thaw};
 use super::clock::Clock;
 use super::crew::Crew;
 use super::demands::{admitted, check_set};
@@ -151,7 +151,7 @@ pub fn tile_in(
     }
     let domain = Domain::new(scene)?;
     match options.method {
-        Method::Engine => engine(session.from, keeper, scene, set, &domain, options, progress),
+        Method::Engine => engine(session, keeper, scene, set, &domain, options, progress),
         Method::Paper if session.from.is_some() || session.keep.is_some() => {
             Err(Error::invalid("checkpoint", "method", "expected the engine: the paper's algorithms keep none"))
         }
@@ -160,7 +160,7 @@ pub fn tile_in(
 }
 
 fn engine(
-    from: Option<&Checkpoint>,
+    Session { from, steps, .. }: Session,
     keeper: Keeper,
     scene: &Scene,
     set: &PatchSet,
@@ -168,7 +168,7 @@ fn engine(
     options: &Options,
     progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Outcome> {
-    let clock = Clock::new(options.time_secs, progress);
+    let clock = Clock::new(options.time_secs, progress).asked_at_most(steps);
     let library = Library::new(set, scene.limits).preferring(&scene.preference).placing(&scene.placed).parting(scene);
     let (tracks, agenda) = match from {
         Some(kept) => (thaw(kept, scene, &library, domain)?, further_agenda(kept, scene)),

@@ -51,6 +51,8 @@ const INSIDE: f32 = 1.5;
 const TASTE: Taste = Taste { calm: 1.0, expansions: 500 };
 /// Joints may turn this much faster than in the captures.
 const RUSH: f32 = 1.2;
+/// Kinds whose people are deeper in each other than this are left out, metres: captured bodies were thinner than ours.
+const EMBRACE: f32 = 0.06;
 
 /// Somebody crosses the border once per period.
 #[derive(Clone, Copy, Debug)]
@@ -102,7 +104,26 @@ struct Life {
 /// The kinds of a set that visitors can play.
 pub(crate) fn playable(set: &PatchSet, meant: impl Fn(&PatchKind) -> bool) -> PatchSet {
     let odd = |k: &PatchKind| k.labels.iter().any(|l| l == "jump" || l == "hop" || l == "staged");
-    set.only(|k| k.props.is_empty() && !odd(k) && (k.people() == 1 || meant(k)))
+    set.only(|k| k.props.is_empty() && !odd(k) && (k.people() == 1 || (meant(k) && depth(k) < EMBRACE)))
+}
+
+/// How deep the people of a kind are in each other at most, metres.
+fn depth(kind: &PatchKind) -> f32 {
+    let mut globals = Vec::new();
+    let ends = kind.fragments.iter().map(|f| f.begin + f.motion.len() as u32);
+    let deepest = (0..ends.max().unwrap_or(0)).map(|clock| {
+        let there = kind.fragments.iter().filter_map(|f| {
+            let frame = clock.checked_sub(f.begin)? as usize;
+            (frame < f.motion.len()).then(|| {
+                f.motion.globals(frame, &mut globals);
+                Figure::new(&globals)
+            })
+        });
+        let figures: Vec<Figure> = there.collect();
+        let pairs = figures.iter().enumerate().flat_map(|(i, a)| figures[..i].iter().map(move |b| a.depth_into(b)));
+        pairs.fold(0.0, f32::max)
+    });
+    deepest.fold(0.0, f32::max)
 }
 
 /// Fills a place; `None` if no way was found for everybody. The same seed gives the same visits.

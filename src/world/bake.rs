@@ -7,7 +7,9 @@ use glam::{DVec2, Vec2};
 use super::rich::moved;
 use super::{CrowdPatch, Identities, Lattice, Limits, Pattern, Plan, Role, Shape, Standing, Template, Walker};
 use crate::stage::World;
-use crate::stage::world::{Lane, NO_ACT, Tables, TemplateInfo, UNITS_PER_METRE, WalkLimits, WorldInfo, stay_slots};
+use crate::stage::world::{
+    Lane, NO_ACT, Tables, TemplateInfo, UNITS_PER_METRE, WalkLimits, WorldInfo, feet_with_body, stay_slots,
+};
 use crate::{Error, Result};
 
 /// Slots of a page: fewer cost memory for control points around their ends, more for lanes that are not there all the time.
@@ -179,11 +181,13 @@ impl Bakery {
         let acts = self.tables.acts.get_or_insert_default();
         acts.walkers.resize(everybody - 1, NO_ACT);
         acts.walker_times.resize(3 * (everybody - 1), 0.0);
+        acts.walker_feet.resize(8 * (everybody - 1), 0.0);
         let act = walker.role.as_ref().map_or(NO_ACT, |role| acts.add(&moved(&role.act, -middle)));
         let (enter, leave) = patch.presence(walker);
         acts.walkers.push(act);
         let begin = walker.role.as_ref().map_or(0.0, |role| -role.lead);
         acts.walker_times.extend([begin, enter as f32, leave as f32]);
+        acts.walker_feet.extend(feet_with_body(enter as f32, leave as f32));
     }
 
     /// What somebody does who stays.

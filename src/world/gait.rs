@@ -9,10 +9,11 @@ use crate::motion::plants::trajectory;
 use crate::motion::{FPS, JOINT_COUNT, Motion, joint, pose};
 use crate::patch::{Fragment, PatchKind, PatchSet};
 use crate::stage::World;
-use crate::stage::world::{Gait, GaitTable, PER_RADIAN, STEPS_PER_CYCLE, mix};
+use crate::stage::world::{Acts, Gait, GaitTable, PER_RADIAN, STEPS_PER_CYCLE, mix};
 use crate::{Error, Result};
 
 use super::footprints::footprints;
+use super::rich::Steps;
 
 /// Poses of a cycle in the table.
 const PHASES: usize = 32;
@@ -20,6 +21,8 @@ const PHASES: usize = 32;
 const BIN: f32 = 0.25;
 /// A cycle turns by at most this, radians.
 const STRAIGHT: f32 = 0.14;
+/// People walk by no more than this part faster or slower to be in step.
+const MORE_THAN_A_TRIFLE: f32 = 0.2;
 /// Below this speed, m/s, somebody looks where they looked before.
 const LOOKS_AHEAD: f32 = 0.35;
 
@@ -164,10 +167,30 @@ pub fn with_gait(world: &World, table: GaitTable) -> Result<World> {
         let stays = world.stays(kind).into_iter().enumerate();
         taken.push(stays.map(|(walker, stay)| track(world, kind, walker, stay, &mut gait)).collect());
     }
-    join(world, &taken, &mut gait);
     let mut tables = world.tables().clone();
+    let met = tables.acts.as_mut().map_or_else(Vec::new, |acts| in_step(world, acts));
+    join(world, &taken, &met, &mut gait);
     tables.gait = Some(gait);
     World::new(tables)
+}
+
+/// Phases with which the clips of those who meet begin and end, by walker of all kinds; nothing for the others, and where nobody steps.
+type Met = Vec<[Option<f64>; 2]>;
+
+/// Finds when feet stand in the clips of those who meet: they go over from walk to clip in their steps, and walks are to be in step.
+fn in_step(world: &World, acts: &mut Acts) -> Met {
+    let mut met = vec![[None; 2]; acts.walkers.len()];
+    for kind in 0..world.kinds() {
+        for walker in 0..world.kind(kind).walkers() {
+            let number = world.kind(kind).first_walker() + walker;
+            let Some((act, [begin, enter, leave])) = world.walker_act(kind, walker) else { continue };
+            let steps = Steps::of(acts, act);
+            met[number] = [enter, leave].map(|secs| steps.phase(secs - begin));
+            let times = steps.changes(enter - begin, leave - begin).map(|secs| (secs + begin) as f32);
+            acts.walker_feet[8 * number..8 * number + 8].copy_from_slice(&times);
+        }
+    }
+    met
 }
 
 /// Steps and headings of a walker; returns how many cycles it goes through.
@@ -210,33 +233,80 @@ fn headings(velocities: &[Vec2]) -> Vec<f32> {
     found
 }
 
-/// Phases at which everybody comes in, so that steps go on over borders.
-fn join(world: &World, taken: &[Vec<f32>], gait: &mut Gait) {
-    let mut cycles: BTreeMap<u32, Vec<(i64, usize, f32)>> = BTreeMap::new();
+/// A stay of a cycle of crossings.
+struct Stay {
+    /// When somebody who begins the cycle in period 0 comes in, slots.
+    when: i64,
+    crossing: usize,
+    /// Cycles of two steps that it takes at its own pace.
+    steps: f64,
+    /// Phases that it is to begin and to end with.
+    phases: [Option<f64>; 2],
+}
+
+/// Phases at which everybody comes in, so that steps go on over borders, and in step with the clips of those who meet.
+fn join(world: &World, taken: &[Vec<f32>], met: &Met, gait: &mut Gait) {
+    let mut cycles: BTreeMap<u32, Vec<Stay>> = BTreeMap::new();
     let mut crossing = 0;
     let identities = &world.tables().identities;
     for instance in 0..world.instances() {
         let kind = world.kind_of(instance);
-        for ((enter, _), &steps) in world.stays(kind).into_iter().zip(&taken[kind]) {
-            // Order on the cycle: when somebody who begins it in period 0 comes in.
+        let first = world.kind(kind).first_walker();
+        for (walker, ((enter, _), &steps)) in world.stays(kind).into_iter().zip(&taken[kind]).enumerate() {
             let ahead = i64::from(world.tables().instance_phases[instance]);
             let when = identities.laps(crossing) * i64::from(world.info().slots) + enter - ahead;
-            cycles.entry(identities.cycle(crossing)).or_default().push((when, crossing, steps));
+            let phases = met.get(first + walker).copied().unwrap_or_default();
+            let of = cycles.entry(identities.cycle(crossing)).or_default();
+            of.push(Stay { when, crossing, steps: f64::from(steps), phases });
             crossing += 1;
         }
     }
     gait.crossing_phases = vec![0.0; crossing];
-    gait.cycle_paces = vec![1.0; identities.cycles()];
-    for (cycle, mut crossings) in cycles {
-        crossings.sort_by_key(|&(when, crossing, _)| (when, crossing));
-        let total: f64 = crossings.iter().map(|c| f64::from(c.2)).sum();
-        let closes = !identities.leads_out(cycle) && total > 1.0;
-        let pace = if closes { total.round() / total } else { 1.0 };
-        gait.cycle_paces[cycle as usize] = pace as f32;
-        let mut phase = (mix(world.info().seed, cycle.into()) % 1024) as f64 / 1024.0;
-        for (_, crossing, steps) in crossings {
-            gait.crossing_phases[crossing] = phase.rem_euclid(1.0) as f32;
-            phase += f64::from(steps) * pace;
+    gait.crossing_paces = vec![1.0; crossing];
+    for (cycle, mut stays) in cycles {
+        stays.sort_by_key(|stay| (stay.when, stay.crossing));
+        let closes = !identities.leads_out(cycle);
+        let first = (mix(world.info().seed, cycle.into()) % 1024) as f64 / 1024.0;
+        let mut phase = pace(&stays, closes, first, gait);
+        for stay in &stays {
+            gait.crossing_phases[stay.crossing] = phase.rem_euclid(1.0) as f32;
+            phase += stay.steps * f64::from(gait.crossing_paces[stay.crossing]);
         }
     }
+}
+
+/// Sets the paces along a cycle; returns the phase that it begins with. Between two stays whose phase is given everybody walks a trifle
+/// faster or slower, so that the second is met as the first was; where that is more than a trifle, it is not.
+fn pace(stays: &[Stay], closes: bool, phase: f64, gait: &mut Gait) -> f64 {
+    let n = stays.len();
+    let wanted = |at: usize| {
+        let next = (closes || at < n).then(|| stays[at % n].phases[0]).flatten();
+        let last = (closes || at > 0).then(|| stays[(at + n - 1) % n].phases[1]).flatten();
+        next.or(last)
+    };
+    let steps = |from: usize, to: usize| (from..to).map(|k| stays[k % n].steps).sum::<f64>();
+    let first = (0..n).find(|&at| wanted(at).is_some());
+    let begin = first.unwrap_or(0);
+    let mut known = (begin, wanted(begin).unwrap_or(phase));
+    let mut set = |from: usize, to: usize, change: f64| {
+        let total = steps(from, to);
+        let pace = (((total - change).round() + change) / total) as f32;
+        let fits = total > 1.0 && (closes && to == begin + n || (pace - 1.0).abs() < MORE_THAN_A_TRIFLE);
+        if fits {
+            (from..to).for_each(|k| gait.crossing_paces[stays[k % n].crossing] = pace);
+        }
+        fits
+    };
+    let end = if closes { begin + n } else { n };
+    for at in begin + 1..=end {
+        let next = if at == begin + n { closes.then_some(wanted(begin).unwrap_or(phase)) } else { wanted(at) };
+        if let Some(next) = next
+            && set(known.0, at, next - known.1)
+        {
+            known = (at, next);
+        }
+    }
+    // Back from the first that is known to the begin.
+    let before: f64 = stays[..begin].iter().map(|s| s.steps * f64::from(gait.crossing_paces[s.crossing])).sum();
+    wanted(begin).unwrap_or(phase) - before
 }

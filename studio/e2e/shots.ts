@@ -1,6 +1,6 @@
 /**
  * Pictures of a crowd from the built page: SHOTS="folder query ..." npm run shots; each query is the page's parameters.
- * CROWD=path takes a real crowd file instead of the synthetic one; LOOK=x,y,z,tx,ty,tz places the camera.
+ * CROWD=path takes a real file (a crowd, a set, a world) instead of the synthetic crowd; LOOK=x,y,z,tx,ty,tz places the camera.
  */
 
 import { mkdir, readFile } from "node:fs/promises";
@@ -22,10 +22,15 @@ for (const [i, query] of queries.entries()) {
   await page.goto(`${server.url}/?${query}&paused=1`);
   await page.evaluate(() => window.crowdquilt.ready).catch((e) => console.log(String(e)));
   const look = process.env.LOOK?.split(",").map(Number);
-  if (look) await page.evaluate((v) => window.crowdquilt.camera(v.slice(0, 3), v.slice(3)), look);
+  const view = (v: number[]) => {
+    const [eye, at] = [v.slice(0, 3), v.slice(3)] as [[number, number, number], [number, number, number]];
+    window.crowdquiltWorld ? window.crowdquiltWorld.walk.look(eye, at) : window.crowdquilt.camera(eye, at);
+  };
+  if (look) await page.evaluate(view, look);
   await page.waitForTimeout(700);
   await page.screenshot({ path: `${folder}/${i}.png` });
-  console.log(query, JSON.stringify(await page.evaluate(() => window.crowdquilt.frame())));
+  const shown = () => window.crowdquiltWorld?.stats ?? window.crowdquilt.frame();
+  console.log(query, JSON.stringify(await page.evaluate(shown)));
 }
 await browser.close();
 await server.close();

@@ -34,19 +34,34 @@ describe("somebody who stays", () => {
     }
   });
 
-  it("half seen is between", () => {
+  it("half seen keeps each foot where its own share has it", () => {
     const world = readWorld(bytes);
     if (!world.acts) throw new Error("the fixture has acts");
+    const { joints } = world.acts;
     const people: Walker[] = [];
     actors(world, world.places[0], 1, [0, 0], people);
     const act = people[0].act;
     if (!act) throw new Error("who stays does something");
-    const n = 4 * world.acts.joints.length;
-    const [whole, half] = [new Float32Array(n), new Float32Array(n)];
+    const n = 4 * joints.length;
     const actor = new Actor(world.acts);
-    actor.pose(act, whole, new Float32Array(n), 0);
-    actor.pose({ ...act, share: 0.5 }, half, new Float32Array(n).fill(0.5), 0);
-    for (let i = 0; i < n; i++) expect(half[i]).toBeCloseTo(whole[i] / 2, 4);
+    const posed = (of: Partial<typeof act>, from = new Float32Array(n), turns = new Float32Array(n)) => {
+      actor.pose({ ...act, ...of }, from, turns, 0);
+      return { places: from, turns };
+    };
+    const [one, other] = [posed({}), posed({ secs: act.secs + 2, x: act.x + 0.05 })];
+    const toe = (name: string) => 4 * joints.findIndex((j) => j.name === name);
+    const [left, right] = [toe("left_toe"), toe("right_toe")];
+    for (const share of [0, 0.4, 1]) {
+      const half = posed(
+        { secs: act.secs + 2, x: act.x + 0.05, share, feet: [0, 1] },
+        one.places.slice(),
+        one.turns.slice(),
+      ).places;
+      for (let axis = 0; axis < 3; axis++) {
+        expect(half[left + axis]).toBeCloseTo(one.places[left + axis], 2);
+        expect(half[right + axis]).toBeCloseTo(other.places[right + axis], 2);
+      }
+    }
   });
 
   it("is refused when a clip is missing", () => {

@@ -1,11 +1,13 @@
 //! What people do who stay: their bodies stay in their discs, and clips go on where they begin again.
 
+use std::collections::BTreeMap;
+
 use glam::{DVec2, Quat, Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::check::report::{Row, Worst};
 use crate::geom::{Capsule, Polygon};
-use crate::motion::{JOINT_COUNT, body_capsules, canonical};
+use crate::motion::{JOINT_COUNT, body_capsules, canonical, joint};
 use crate::stage::World;
 use crate::stage::world::{Acts, Spot};
 
@@ -45,6 +47,11 @@ pub(super) fn rows(world: &World) -> Vec<Row> {
 
 /// Who meets may be so deep in each other, metres: an embrace is as deep as it was captured.
 const EMBRACE: f64 = 0.08;
+/// For so long after coming in and before going out walk and clip fade into each other, seconds. One foot stands then: its ball is
+/// slower and lower than this, m/s and metres; but for this part of the time.
+const FADING: f64 = 1.5;
+const STANDS: (f32, f32) = (0.15, 0.06);
+const ALOFT: f64 = 0.15;
 /// Hips are so near to where the ordinary sampling has the walker, metres.
 const STRAY: f64 = 0.25;
 
@@ -67,10 +74,15 @@ pub(super) fn meetings(world: &World) -> Vec<Row> {
         worst.iter_mut().zip(values).for_each(|(worst, &value)| worst.offer(value, place));
     }
     let [depth, stray, outside] = worst;
+    let feet: Vec<[usize; 2]> = all.par_iter().map(|&(instance, time)| fading(world, instance, time)).collect();
+    let [fading, aloft] = feet.iter().fold([0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
+    let mut loose = Worst::default();
+    loose.offer(aloft as f64 / fading.max(1) as f64, || format!("{fading} bodies"));
     vec![
         depth.row(7, "bodies of who meets enter each other", EMBRACE, "m"),
         stray.row(7, "hips of who meets are not where they are sampled", STRAY, "m"),
         outside.row(7, "who meets leaves the patch", ROUNDED_PLACE, "m"),
+        loose.row(7, "no foot stands where walk and clip fade", ALOFT, ""),
     ]
 }
 
@@ -102,6 +114,33 @@ fn meeting(world: &World, instance: usize, time: f64) -> [f64; 3] {
         depth = pairs.fold(depth, f32::max);
     }
     [f64::from(depth), stray, outside]
+}
+
+/// How many people are where walk and clip fade into each other, and how many of them have no foot that stands.
+fn fading(world: &World, instance: usize, time: f64) -> [usize; 2] {
+    const APART: f64 = 1.0 / 60.0;
+    let spot = Spot { instance: instance as u32, shift: DVec2::ZERO };
+    let balls = |time: f64| -> BTreeMap<(usize, i64), [Vec3; 2]> {
+        let (mut pose, mut globals) = ([Quat::IDENTITY; JOINT_COUNT], Vec::new());
+        let moment = world.moment(time);
+        let people = world.walkers_of(instance, &moment).zip(world.bodies(spot, time));
+        let near = |time: f64, who| {
+            is_within(world, instance, who, time)
+                && !(is_within(world, instance, who, time - FADING) && is_within(world, instance, who, time + FADING))
+        };
+        people
+            .filter(|(who, _)| near(time, *who))
+            .map(|(who, walking)| {
+                let hips = world.walker_body(spot, who, &walking, time, &mut pose);
+                canonical().globals(hips, &pose, &mut globals);
+                (who, [joint::LEFT_TOE, joint::RIGHT_TOE].map(|toe| globals[toe].0))
+            })
+            .collect()
+    };
+    let (now, then) = (balls(time), balls(time + APART));
+    let stands = |a: &Vec3, b: &Vec3| a.distance(*b) < STANDS.0 * APART as f32 && a.y < STANDS.1;
+    let both = now.iter().filter_map(|(who, balls)| Some((balls, then.get(who)?)));
+    both.fold([0; 2], |[all, aloft], (a, b)| [all + 1, aloft + usize::from(!(0..2).any(|i| stands(&a[i], &b[i])))])
 }
 
 /// Whether somebody has come in and not gone out at a time: slots begin and end a moment before or after.

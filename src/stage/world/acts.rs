@@ -6,6 +6,7 @@
 
 use glam::{Quat, Vec2, Vec3};
 
+use super::fade::{Shares, fade};
 use super::tables::{Tables, expect};
 use super::{Spot, Walking, World};
 use crate::Result;
@@ -58,6 +59,9 @@ pub struct Acts {
     pub walkers: Vec<u32>,
     /// Of every walker, seconds since the begin of the period it came in: when its clip begins, when it comes in, when it goes out.
     pub walker_times: Vec<f32>,
+    /// Of every walker, on the same clock: when its left and its right foot begin and end to go over from its walk to its clip, then
+    /// from its clip to its walk.
+    pub walker_feet: Vec<f32>,
 }
 
 impl Acts {
@@ -158,13 +162,15 @@ impl Acts {
         let odd = self.walkers.iter().find(|&&a| a != NO_ACT && a as usize >= clips);
         expect(odd.is_none(), "walker_acts", || format!("a clip below {clips} is expected, {odd:?}"))?;
         let times = self.walker_times.len() == 3 * people && self.walker_times.iter().all(|t| t.is_finite());
-        expect(times, "walker_act_times", || format!("{} numbers for {people} walkers", self.walker_times.len()))
+        expect(times, "walker_act_times", || format!("{} numbers for {people} walkers", self.walker_times.len()))?;
+        let feet = self.walker_feet.len() == 8 * people && self.walker_feet.iter().all(|t| t.is_finite());
+        expect(feet, "walker_act_feet", || format!("{} numbers for {people} walkers", self.walker_feet.len()))
     }
 
     /// Bytes of all arrays.
     pub(super) fn bytes(&self) -> usize {
         let four =
-            self.ends.len() + self.steps.len() + self.roots.len() + 2 * self.stayers.len() + 4 * self.walkers.len();
+            self.ends.len() + self.steps.len() + self.roots.len() + 2 * self.stayers.len() + 12 * self.walkers.len();
         4 * four + 2 * self.rotations.len()
     }
 
@@ -177,10 +183,16 @@ impl Acts {
         writer.array("stayer_act_leads", &self.stayer_leads);
         writer.array("walker_acts", &self.walkers);
         writer.array("walker_act_times", &self.walker_times);
+        writer.array("walker_act_feet", &self.walker_feet);
     }
 
     pub(super) fn read(reader: &Reader) -> Result<Self> {
+        let walker_times: Vec<f32> = reader.array("walker_act_times")?;
+        // Worlds made before feet stood still meanwhile have none.
+        let with_body = || walker_times.chunks_exact(3).flat_map(|times| feet_with_body(times[1], times[2])).collect();
+        let has_feet = reader.has("walker_act_feet");
         Ok(Self {
+            walker_feet: if has_feet { reader.array("walker_act_feet")? } else { with_body() },
             ends: reader.array("act_ends")?,
             steps: reader.array("act_steps")?,
             roots: reader.array("act_roots")?,
@@ -188,9 +200,15 @@ impl Acts {
             stayers: reader.array("stayer_acts")?,
             stayer_leads: reader.array("stayer_act_leads")?,
             walkers: reader.array("walker_acts")?,
-            walker_times: reader.array("walker_act_times")?,
+            walker_times,
         })
     }
+}
+
+/// When feet go over from walk to clip and back if nothing is known of their steps: as the body does.
+pub(crate) fn feet_with_body(enter: f32, leave: f32) -> [f32; 8] {
+    let (first, last) = (enter + FADE_SECS as f32, leave - FADE_SECS as f32);
+    [enter, first, enter, first, last, leave, last, leave]
 }
 
 impl World {
@@ -231,18 +249,28 @@ impl World {
         let period = f64::from(self.info().period_secs);
         let slot = period / f64::from(self.info().slots);
         let own = time + f64::from(self.tables.instance_phases[instance]) * slot - lap as f64 * period;
-        let share = (((own - enter).min(leave - own)) / FADE_SECS).clamp(0.0, 1.0) as f32;
-        let share = share * share * (3.0 - 2.0 * share);
+        let shares = self.shares(self.kind(self.kind_of(instance)).first_walker() + walker, own, [enter, leave]);
         let mut acted = [Quat::IDENTITY; JOINT_COUNT];
         let Some(acts) = &self.tables.acts else { return hips };
         let turn = Quat::from_rotation_y(-self.turn(instance));
         let place = turn * acts.sample_once(act, own - begin, &mut acted);
         acted[0] = turn * acted[0];
-        for (q, to) in pose.iter_mut().zip(acted) {
-            let to = if q.dot(to) < 0.0 { -to } else { to };
-            *q = (*q * (1.0 - share) + to * share).normalize();
-        }
-        hips.lerp(place, share)
+        fade(pose, hips, (&acted, place), shares)
+    }
+
+    /// How much of somebody's clip is seen, at a time on its own clock.
+    fn shares(&self, walker: usize, own: f64, [enter, leave]: [f64; 2]) -> Shares {
+        let eased = |share: f64| {
+            let share = share.clamp(0.0, 1.0) as f32;
+            share * share * (3.0 - 2.0 * share)
+        };
+        let body = eased((own - enter).min(leave - own) / FADE_SECS);
+        let times = self.tables.acts.as_ref().map_or(&[][..], |acts| &acts.walker_feet[8 * walker..8 * walker + 8]);
+        let gone = |i: usize| {
+            let (from, to) = (f64::from(times[i]), f64::from(times[i + 1]));
+            eased((own - from) / (to - from).max(1e-3))
+        };
+        Shares { body, feet: [0, 2].map(|foot| gone(foot).min(1.0 - gone(foot + 4))) }
     }
 
     /// The body of the `index`-th of those who stay in a patch, at `time` (seconds, any): rotations of the canonical skeleton into

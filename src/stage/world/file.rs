@@ -152,7 +152,7 @@ fn write_gait(gait: &Gait, writer: &mut Writer) {
     writer.array("gait_steps", &gait.steps);
     writer.array("gait_headings", &gait.headings);
     writer.array("crossing_phases", &gait.crossing_phases);
-    writer.array("cycle_paces", &gait.cycle_paces);
+    writer.array("crossing_paces", &gait.crossing_paces);
 }
 
 fn read_gait(phases: usize, reader: &Reader) -> Result<Gait> {
@@ -178,8 +178,18 @@ fn read_gait(phases: usize, reader: &Reader) -> Result<Gait> {
         steps: reader.array("gait_steps")?,
         headings: reader.array("gait_headings")?,
         crossing_phases: reader.array("crossing_phases")?,
-        cycle_paces: reader.array("cycle_paces")?,
+        crossing_paces: paces(reader)?,
     })
+}
+
+/// Worlds made before people met had one for every cycle.
+fn paces(reader: &Reader) -> Result<Vec<f32>> {
+    if reader.has("crossing_paces") {
+        return reader.array("crossing_paces");
+    }
+    let (paces, cycles): (Vec<f32>, Vec<u32>) = (reader.array("cycle_paces")?, reader.array("crossing_cycles")?);
+    let problem = || Error::invalid("world", "cycle_paces", format!("{} numbers are too few", paces.len()));
+    cycles.iter().map(|&cycle| paces.get(cycle as usize).copied().ok_or_else(problem)).collect()
 }
 
 fn identities(reader: &Reader) -> Result<Identities> {

@@ -128,7 +128,7 @@ impl<'a> Kind<'a> {
     }
 
     /// Number of walkers of the kinds before.
-    pub(super) fn first_walker(&self) -> usize {
+    pub(crate) fn first_walker(&self) -> usize {
         self.run(1).start
     }
 

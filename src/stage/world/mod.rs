@@ -18,12 +18,14 @@
 //! | `sample.rs` | the sampling kernel |
 //! | `kind.rs` | what a patch kind consists of: outline, patterns, objects, people, ways |
 //! | `acts.rs` | full bodies of people who do something else than walk: clips |
+//! | `fade.rs` | how walk and clip fade into each other, and feet stay meanwhile |
 //! | `gait/` | full bodies: poses by speed and phase, steps that go on over borders, feet that stay where they are planted |
 //! | `identity.rs` | who is who, at any time |
 //! | `place.rs` | where instances are, which are near |
 //! | `file.rs` | the world file |
 
 mod acts;
+mod fade;
 mod file;
 mod gait;
 mod identity;
@@ -36,8 +38,8 @@ mod tables;
 
 use glam::{DVec2, Vec2};
 
-pub(crate) use acts::NO_ACT;
 pub use acts::{Act, Acts};
+pub(crate) use acts::{NO_ACT, feet_with_body};
 pub use gait::{Foot, Gait, GaitTable, Swing, Walking};
 pub(crate) use gait::{PER_RADIAN, STEPS_PER_CYCLE};
 pub(crate) use identity::mix;

@@ -7,14 +7,16 @@ use glam::{Quat, Vec2, Vec3};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::circle::around;
-use crate::geom::{Capsule, Ground};
+use crate::geom::{Capsule, Disc, Ground, smallest_circle};
 use crate::motion::{JOINT_COUNT, body_capsules, canonical};
 use crate::stage::world::Act;
 use crate::world::{FramePatch, Limits, Shape, Standing, StaticObject};
 
 /// A disc reaches this much beyond the body, metres: rounding must not matter.
 const ROUNDING: f32 = 0.01;
+
+/// Tableaux that are wider are left out, metres.
+const WIDEST: f32 = 1.6;
 
 /// What somebody does who stays: a clip, and how many seconds it is ahead.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -52,12 +54,15 @@ impl Tableau {
     pub(super) fn new(motions: Vec<Act>, seats: Vec<(Vec2, Vec2, f32)>) -> Self {
         let members: Vec<Member> = motions.into_iter().map(member).collect();
         let corner = |(middle, size, _): &(Vec2, Vec2, f32)| (*middle, 0.5 * size.length());
-        let discs: Vec<(Vec2, f32)> =
-            members.iter().map(|m| (m.at.position, m.radius)).chain(seats.iter().map(corner)).collect();
-        let (middle, reach) = around(&discs);
+        let (middle, reach) = around(members.iter().map(|m| (m.at.position, m.radius)).chain(seats.iter().map(corner)));
         let seen = |m: Member| Member { at: Ground::new(m.at.position - middle, m.at.heading), ..m };
         let seats = seats.into_iter().map(|(at, size, angle)| (at - middle, size, angle)).collect();
         Self { members: members.into_iter().map(seen).collect(), seats, reach }
+    }
+
+    /// Whether it is small enough for a place among others.
+    pub(super) fn is_small(&self) -> bool {
+        self.reach < WIDEST
     }
 
     /// Several side by side, all looking the same way on average, each as wide as it is.
@@ -74,6 +79,21 @@ impl Tableau {
         members.iter_mut().for_each(|m| m.at.position -= middle);
         seats.iter_mut().for_each(|s| s.0 -= middle);
         Self { members, seats, reach: 0.5 * x }
+    }
+
+    /// Several who stand in a circle, side by side, and look at its middle; each of them is alone.
+    pub(super) fn ring(all: &[&Self]) -> Self {
+        let (n, wide) = (all.len(), |k: usize| all[k % all.len()].reach);
+        let chord = (0..n).map(|k| wide(k) + wide(k + 1)).fold(0.0, f32::max);
+        let radius = 0.5 * chord / (0.5 * TAU / n as f32).sin();
+        let place = |(k, one): (usize, &&Self)| {
+            let angle = TAU * k as f32 / n as f32;
+            let turn = angle + 0.5 * TAU - one.members.first().map_or(0.0, |m| m.at.heading);
+            let to = Ground::new(radius * Vec2::new(angle.sin(), angle.cos()), turn);
+            one.members.iter().map(move |m| Member { at: to.then(m.at), ..m.clone() }).collect::<Vec<_>>()
+        };
+        let members = all.iter().enumerate().flat_map(place).collect();
+        Self { members, seats: vec![], reach: radius + (0..n).map(wide).fold(0.0, f32::max) }
     }
 
     /// Puts it into a frame-patch somewhere at random, called `name`. Returns whether there was room.
@@ -102,9 +122,16 @@ impl Tableau {
     }
 }
 
+/// Middle and radius of the smallest circle around discs.
+fn around(discs: impl Iterator<Item = (Vec2, f32)>) -> (Vec2, f32) {
+    let discs: Vec<Disc> = discs.map(|(at, radius)| (at.as_dvec2(), f64::from(radius))).collect();
+    let (middle, radius) = smallest_circle(&discs);
+    (middle.as_vec2(), radius as f32)
+}
+
 /// Somebody with a motion: seen from the middle of the circle that the body stays in.
 fn member(motion: Act) -> Member {
-    let (middle, radius) = around(&extent(&motion));
+    let (middle, radius) = around(extent(&motion));
     let ahead = motion.rotations.iter().step_by(JOINT_COUNT).map(|q| *q * Vec3::Z);
     let ahead: Vec2 = ahead.map(|v| Vec2::new(v.x, v.z)).sum();
     let at = Ground::new(middle, ahead.x.atan2(ahead.y));
@@ -112,14 +139,14 @@ fn member(motion: Act) -> Member {
 }
 
 /// All capsules of a body at all frames as discs on the ground.
-fn extent(motion: &Act) -> Vec<(Vec2, f32)> {
+fn extent(motion: &Act) -> impl Iterator<Item = (Vec2, f32)> {
     let (mut globals, mut capsules) = (Vec::new(), Vec::<Capsule>::new());
     for (root, pose) in motion.roots.iter().zip(motion.rotations.chunks_exact(JOINT_COUNT)) {
         canonical().globals(*root, pose, &mut globals);
         body_capsules(&globals, &mut capsules);
     }
     let ground = |p: Vec3| Vec2::new(p.x, p.z);
-    capsules.iter().flat_map(|c| [(ground(c.a), c.radius), (ground(c.b), c.radius)]).collect()
+    capsules.into_iter().flat_map(move |c| [(ground(c.a), c.radius), (ground(c.b), c.radius)])
 }
 
 /// The same motion in the frame of a place.
@@ -153,5 +180,26 @@ mod tests {
             assert!(member.act.roots[0].x.abs() < 0.02 && member.radius > 0.6);
         }
         assert!(tableau.reach > 0.5 + a.radius - 0.02 && tableau.reach < 0.5 + a.radius + 0.1);
+    }
+
+    #[test]
+    fn who_stands_in_a_circle_looks_at_its_middle_and_touches_nobody() {
+        let alone = |heading: f32| {
+            let mut pose = [Quat::IDENTITY; JOINT_COUNT];
+            pose[0] = Quat::from_rotation_y(heading);
+            Tableau::new(vec![Act { step: 0.1, roots: vec![Vec3::Y; 2], rotations: pose.repeat(2) }], vec![])
+        };
+        let singles = [alone(0.7), alone(-2.0), alone(0.0)];
+        for n in 2..=3 {
+            let ring = Tableau::ring(&singles.iter().take(n).collect::<Vec<_>>());
+            for (i, member) in ring.members.iter().enumerate() {
+                let Ground { position, heading } = member.at;
+                assert!((-position.normalize()).distance(Vec2::new(heading.sin(), heading.cos())) < 1e-3, "{n}, {i}");
+                assert!(position.length() + member.radius <= ring.reach + 1e-4);
+                for other in &ring.members[..i] {
+                    assert!(position.distance(other.at.position) > member.radius + other.radius - 0.01);
+                }
+            }
+        }
     }
 }

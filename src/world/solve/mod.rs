@@ -6,6 +6,7 @@
 //! side, gets another output, or is connected anew.
 
 mod contact;
+mod follow;
 mod own;
 mod particles;
 mod planner;
@@ -22,6 +23,7 @@ use super::frame::FramePatch;
 use super::pairing::Pairing;
 use super::{CrowdPatch, Limits, Path, Walker};
 use crate::{Error, Result};
+pub(super) use follow::follow;
 use planner::Planner;
 pub use version::{Common, vary};
 

@@ -4,7 +4,8 @@ use glam::DVec2;
 
 use super::contact::Push;
 use super::track::Track;
-use crate::world::frame::Border;
+use crate::world::Limits;
+use crate::world::frame::{Border, FramePatch};
 use crate::world::shape::Obstacle;
 
 /// Objects are passed with this much room, metres.
@@ -42,6 +43,20 @@ pub(super) struct Ground {
 }
 
 impl Ground {
+    /// The surroundings of walkers in a frame-patch, on a grid of so many seconds.
+    pub fn new(frame: &FramePatch, limits: &Limits, obstacles: Vec<Obstacle>, step: f64) -> Self {
+        Self {
+            obstacles,
+            borders: (0..frame.outline.len()).map(|edge| frame.border(edge)).collect(),
+            radius: f64::from(limits.radius),
+            step,
+            speed: f64::from(limits.speed) * step,
+            bend: f64::from(limits.acceleration) * step * step,
+            turning: f64::from(limits.turning) * step,
+            standing: f64::from(limits.standing) * step,
+        }
+    }
+
     /// Whether `track` keeps its own limits everywhere.
     pub fn keeps(&self, track: &Track) -> bool {
         let knots = track.moving_knots();

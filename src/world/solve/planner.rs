@@ -61,16 +61,7 @@ impl Planner {
     pub fn new(frame: &FramePatch, limits: &Limits, obstacles: Vec<Obstacle>, pairing: Pairing) -> Self {
         let grid = (f64::from(frame.period()) / STEP).round().max(1.0);
         let step = f64::from(frame.period()) / grid;
-        let ground = Ground {
-            obstacles,
-            borders: (0..frame.outline.len()).map(|edge| frame.border(edge)).collect(),
-            radius: f64::from(limits.radius),
-            step,
-            speed: f64::from(limits.speed) * step,
-            bend: f64::from(limits.acceleration) * step * step,
-            turning: f64::from(limits.turning) * step,
-            standing: f64::from(limits.standing) * step,
-        };
+        let ground = Ground::new(frame, limits, obstacles, step);
         let n = pairing.len();
         let tracks = pairing.inputs.iter().map(|&line| Track::new(line)).collect();
         Self {

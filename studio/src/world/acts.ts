@@ -2,6 +2,7 @@
 
 import { type Container, FileProblem } from "../crowd/container";
 import type { Joint } from "../crowd/model";
+import { fade, isWhole } from "./fade";
 import type { Acts, Place, World } from "./model";
 import { added, times, turned } from "./quaternion";
 import type { Act, Walker } from "./sample";
@@ -23,7 +24,9 @@ export function readActs(file: Container, joints: Joint[]): Acts {
     leads: file.array("stayer_act_leads", "f32"),
     walkers: file.array("walker_acts", "u32"),
     times: file.array("walker_act_times", "f32"),
+    feet: file.has("walker_act_feet") ? file.array("walker_act_feet", "f32") : new Float32Array(),
   };
+  if (!file.has("walker_act_feet")) acts.feet = withBody(acts.times);
   const frames = acts.ends.at(-1) ?? 0;
   const sizes: [string, number, number][] = [
     ["act_steps", acts.steps.length, acts.ends.length],
@@ -31,6 +34,7 @@ export function readActs(file: Container, joints: Joint[]): Acts {
     ["act_rotations", acts.rotations.length, 4 * joints.length * frames],
     ["stayer_act_leads", acts.leads.length, acts.stayers.length],
     ["walker_act_times", acts.times.length, 3 * acts.walkers.length],
+    ["walker_act_feet", acts.feet.length, 8 * acts.walkers.length],
   ];
   for (const [name, found, expected] of sizes) {
     if (found !== expected) throw new FileProblem(`array ${name}`, `expected ${expected} numbers, found ${found}`);
@@ -40,6 +44,16 @@ export function readActs(file: Container, joints: Joint[]): Acts {
     if (odd !== undefined) throw new FileProblem(`array ${name}`, `expected a clip, found ${odd}`);
   }
   return acts;
+}
+
+/** In older worlds feet go over from walk to clip and back as the body does. */
+function withBody(times: Float32Array): Float32Array {
+  const feet = Array.from({ length: times.length / 3 }, (_, i) => {
+    const [, enter, leave] = times.subarray(3 * i);
+    const [first, last] = [enter + FADE_SECS, leave - FADE_SECS];
+    return [enter, first, enter, first, last, leave, last, leave];
+  });
+  return Float32Array.from(feet.flat());
 }
 
 /** The clip of somebody who stays, or null. */
@@ -75,7 +89,14 @@ export function actors(
       feet: null,
       // The same looks for the same place, whatever walks by.
       id: (Math.imul(place.firstCrossing + 1, 0x9e3779b1) ^ Math.imul(kind.firstStayer + index + 7, 0x85ebca6b)) >>> 0,
-      act: { ...at, clip, secs: own - Math.floor(own / world.period) * world.period + lead, repeats: true, share: 1 },
+      act: {
+        ...at,
+        clip,
+        secs: own - Math.floor(own / world.period) * world.period + lead,
+        repeats: true,
+        share: 1,
+        feet: [1, 1],
+      },
     });
   }
 }
@@ -93,9 +114,17 @@ export function visit(
   if (clip === NONE || !world.acts) return undefined;
   const [begin, enter, leave] = world.acts.times.subarray(3 * walker);
   const own = secs + (place.phase * world.period) / world.slots - lap * world.period;
-  const near = Math.min(Math.max(Math.min(own - enter, leave - own) / FADE_SECS, 0), 1);
+  const feet = world.acts.feet.subarray(8 * walker, 8 * walker + 8);
+  const gone = (i: number) => eased((own - feet[i]) / Math.max(feet[i + 1] - feet[i], 1e-3));
+  const shown = (foot: number) => Math.min(gone(foot), 1 - gone(foot + 4));
   const at = { x: place.x + shift[0], z: place.z + shift[1], heading: -place.turn };
-  return { ...at, clip, secs: own - begin, repeats: false, share: near * near * (3 - 2 * near) };
+  const share = eased(Math.min(own - enter, leave - own) / FADE_SECS);
+  return { ...at, clip, secs: own - begin, repeats: false, share, feet: [shown(0), shown(2)] };
+}
+
+function eased(share: number): number {
+  const inside = Math.min(Math.max(share, 0), 1);
+  return inside * inside * (3 - 2 * inside);
 }
 
 /** Full bodies out of clips. */
@@ -128,10 +157,11 @@ export class Actor {
       this.places.set(place, into);
       this.places[into + 3] = 1;
     }
-    for (let i = 0; i < this.places.length; i += 4) {
-      for (let k = 0; k < 4; k++) places[at + i + k] += (this.places[i + k] - places[at + i + k]) * act.share;
-      mix(turns, at + i, this.turns, i, act.share);
-      unit(turns, at + i);
+    if (isWhole(act)) {
+      places.set(this.places, at);
+      turns.set(this.turns, at);
+    } else {
+      fade(this.acts.joints, { places, turns, at }, { places: this.places, turns: this.turns, at: 0 }, act);
     }
   }
 
@@ -161,7 +191,7 @@ export class Actor {
 function mix(into: Float32Array, at: number, from: ArrayLike<number>, begin: number, share: number): void {
   let dot = 0;
   for (let k = 0; k < 4; k++) dot += into[at + k] * from[begin + k];
-  const sign = dot < 0 && share < 1 ? -1 : 1;
+  const sign = dot < 0 ? -1 : 1;
   for (let k = 0; k < 4; k++) into[at + k] += (sign * from[begin + k] - into[at + k]) * share;
 }
 

@@ -21,10 +21,12 @@ import {
   Vector3,
 } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
+import type { Joint } from "../crowd/model";
 import { bodies } from "../draw/bodies";
 import { buildMannequin, restPositions } from "../draw/mannequin";
 import { lookOf, looksOf, PART_COUNT, Part } from "../draw/palette";
 import { Actor } from "./acts";
+import { isWhole } from "./fade";
 import type { Acts, Gait } from "./model";
 import { Poser } from "./pose";
 import type { Walker } from "./sample";
@@ -43,24 +45,23 @@ export class Figures {
   private readonly textures: DataTexture[] = [];
   private readonly poser: Poser | null = null;
   private readonly actor: Actor | null = null;
+  private readonly joints: readonly Joint[];
   private readonly geometry = new InstancedBufferGeometry();
 
-  constructor(
-    private readonly gait: Gait | null,
-    acts: Acts | null,
-  ) {
+  constructor(gait: Gait | null, acts: Acts | null) {
+    this.joints = gait?.joints ?? acts?.joints ?? [];
     this.far = new InstancedMesh(figure(), new MeshStandardMaterial({ roughness: 0.85 }), MOST_FAR);
     this.far.frustumCulled = false;
     this.far.castShadow = true;
-    if (!gait) return;
+    if (this.joints.length === 0) return;
     const rows = MOST_NEAR / COLUMNS;
-    const texels = COLUMNS * gait.joints.length * rows * 4;
+    const texels = COLUMNS * this.joints.length * rows * 4;
     this.places = new Float32Array(texels);
     this.turns = new Float32Array(texels);
     this.looks = new Uint8Array(MOST_NEAR * PART_COUNT * 4);
-    this.poser = new Poser(gait);
+    this.poser = gait ? new Poser(gait) : null;
     this.actor = acts ? new Actor(acts) : null;
-    this.near = this.body(gait, rows);
+    this.near = this.body(rows);
   }
 
   /** Draws these people: those within `reach` of the eye as mannequins, as many as there may be. */
@@ -68,15 +69,14 @@ export class Figures {
     const sorted = people
       .map((walker) => ({ walker, distance: Math.hypot(walker.x - eye.x, walker.z - eye.z) }))
       .sort((a, b) => a.distance - b.distance);
-    let near = 0;
-    if (this.near) while (near < Math.min(MOST_NEAR, sorted.length) && sorted[near].distance < reach) near++;
-    for (let i = 0; i < near; i++) this.dress(i, sorted[i].walker);
-    this.geometry.instanceCount = near;
+    const [near, rest] = this.chosen(sorted, reach);
+    for (const [i, walker] of near.entries()) this.dress(i, walker);
+    this.geometry.instanceCount = near.length;
     for (const texture of this.textures) texture.needsUpdate = true;
-    const far = Math.min(sorted.length - near, MOST_FAR);
+    const far = Math.min(rest.length, MOST_FAR);
     const [matrix, color] = [new Matrix4(), new Color()];
     for (let i = 0; i < far; i++) {
-      const { walker } = sorted[near + i];
+      const walker = rest[i];
       matrix.makeRotationY(walker.heading).setPosition(walker.x, 0, walker.z);
       this.far.setMatrixAt(i, matrix);
       this.far.setColorAt(i, color.set(lookOf(walker.id % 4096)[Part.Shirt] ?? "#888888"));
@@ -84,20 +84,30 @@ export class Figures {
     this.far.count = far;
     this.far.instanceMatrix.needsUpdate = true;
     if (this.far.instanceColor) this.far.instanceColor.needsUpdate = true;
-    return { near, far };
+    return { near: near.length, far };
+  }
+
+  /** Who is drawn as a mannequin, and the others: without a gait only those who do something else than walk have bodies. */
+  private chosen(sorted: readonly { walker: Walker; distance: number }[], reach: number): [Walker[], Walker[]] {
+    const [near, rest]: [Walker[], Walker[]] = [[], []];
+    for (const { walker, distance } of sorted) {
+      const shown = this.poser || (this.actor && walker.act && isWhole(walker.act));
+      (shown && distance < reach && near.length < MOST_NEAR ? near : rest).push(walker);
+    }
+    return [near, rest];
   }
 
   private dress(slot: number, walker: Walker): void {
-    if (!this.gait || !this.places || !this.turns || !this.looks) return;
-    const at = slot * this.gait.joints.length * 4;
-    if (walker.act?.share !== 1) this.poser?.pose(walker, this.places, this.turns, at);
+    if (!this.places || !this.turns || !this.looks) return;
+    const at = slot * this.joints.length * 4;
+    if (!walker.act || !isWhole(walker.act)) this.poser?.pose(walker, this.places, this.turns, at);
     if (walker.act) this.actor?.pose(walker.act, this.places, this.turns, at);
     this.looks.set(looksOf(walker.id % 4096), slot * PART_COUNT * 4);
   }
 
-  private body(gait: Gait, rows: number): Mesh {
-    const made = buildMannequin(gait.joints, 0.55);
-    const { geometry } = this;
+  private body(rows: number): Mesh {
+    const { geometry, joints } = this;
+    const made = buildMannequin(joints, 0.55);
     geometry.setAttribute("position", new BufferAttribute(made.positions, 3));
     geometry.setAttribute("normal", new BufferAttribute(made.normals, 3));
     geometry.setAttribute("bones", new BufferAttribute(made.bones, 4));
@@ -105,11 +115,11 @@ export class Figures {
     geometry.setAttribute("part", new BufferAttribute(made.parts, 1));
     geometry.setAttribute("build", new InstancedBufferAttribute(new Float32Array(MOST_NEAR), 1));
     geometry.setIndex(new BufferAttribute(made.indices, 1));
-    const width = COLUMNS * gait.joints.length;
+    const width = COLUMNS * joints.length;
     const floats = (data: Float32Array | null) =>
       this.texture(new DataTexture(data, width, rows, RGBAFormat, FloatType));
-    const flesh = new Float32Array(gait.joints.flatMap((j) => [...j.offset, 0, 1, 1, 1, 0]));
-    const builds = new DataTexture(flesh, gait.joints.length * 2, 1, RGBAFormat, FloatType);
+    const flesh = new Float32Array(joints.flatMap((j) => [...j.offset, 0, 1, 1, 1, 0]));
+    const builds = new DataTexture(flesh, joints.length * 2, 1, RGBAFormat, FloatType);
     builds.needsUpdate = true;
     const looks = new DataTexture(this.looks, MOST_NEAR * PART_COUNT, 1, RGBAFormat, UnsignedByteType);
     looks.colorSpace = SRGBColorSpace;
@@ -117,7 +127,7 @@ export class Figures {
       posePositions: { value: floats(this.places) },
       poseRotations: { value: floats(this.turns) },
       poseColumns: { value: COLUMNS },
-      rest: { value: restPositions(gait.joints).map((p) => new Vector3(...p)) },
+      rest: { value: restPositions(joints).map((p) => new Vector3(...p)) },
       lift: { value: 0 },
       looks: { value: this.texture(looks) },
       builds: { value: builds },
@@ -128,7 +138,7 @@ export class Figures {
       personCount: { value: MOST_NEAR },
       tileOffsets: { value: Array.from({ length: 9 }, () => new Vector2()) },
     };
-    return bodies(geometry, uniforms, gait.joints.length);
+    return bodies(geometry, uniforms, joints.length);
   }
 
   private texture(made: DataTexture): DataTexture {

@@ -26,7 +26,7 @@ const HEEL = 0.06;
 const STRAIGHT = 0.1;
 const TOES = 0.005;
 /** First joints of the legs in the skeleton of patch sets; shin, foot and toes follow each. */
-const LEGS = [1, 5] as const;
+export const LEGS = [1, 5] as const;
 
 interface Leg {
   up: number;

@@ -21,6 +21,7 @@ export interface Gait {
   steps: Int16Array;
   headings: Int16Array;
   crossingPhases: Float32Array;
+  /** By how much people step faster from every crossing to the next. */
   paces: Float32Array;
   /** Left and ahead of where somebody is, of both feet in the middle of their stances, of every cycle; null in old files. */
   prints: Float32Array | null;
@@ -49,6 +50,8 @@ export interface Acts {
   /** The clip of every walker of every kind, or none; when it begins, and when the walker comes in and goes out. */
   walkers: Uint32Array;
   times: Float32Array;
+  /** When its left and its right foot begin and end to go over from walk to clip, then from clip to walk. */
+  feet: Float32Array;
 }
 
 export interface Thing {

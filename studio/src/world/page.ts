@@ -13,6 +13,8 @@ import { Walk } from "./walk";
 const SKY = "#dfe6ea";
 const SIGHT = 130;
 const NEAR = 28;
+/** Half the side of the box in which things cast shadows, metres: what is shown near by. */
+const SHADED = 24;
 
 /** A patch at its place or at one of its repetitions. */
 interface Spot {
@@ -46,12 +48,14 @@ export class WorldPage {
     this.scene.background = new Color(SKY);
     this.scene.fog = new Fog(SKY, SIGHT * 0.45, SIGHT * 0.98);
     this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(1024, 1024);
+    this.sun.shadow.mapSize.set(2048, 2048);
     const box = this.sun.shadow.camera;
-    [box.left, box.bottom, box.right, box.top, box.far] = [-40, -40, 40, 40, 160];
+    [box.left, box.bottom, box.right, box.top] = [-SHADED, -SHADED, SHADED, SHADED];
+    [box.near, box.far] = [10, 110];
     box.updateProjectionMatrix();
-    this.sun.shadow.normalBias = 0.05;
-    this.sun.shadow.bias = -0.0012;
+    // A centimetre or two: what is moved farther from who casts it no longer meets the feet.
+    this.sun.shadow.normalBias = 0.01;
+    this.sun.shadow.bias = -0.0002;
     this.scene.add(new HemisphereLight("#f3f6ff", "#b9a994", 1.7), this.sun, this.sun.target, this.figures.far);
     if (this.figures.near) this.scene.add(this.figures.near);
     this.scene.add(beyond("#c9cac4"));
@@ -73,13 +77,22 @@ export class WorldPage {
       actors(this.world, place, this.time, shift, people);
     }
     const drawn = this.figures.show(people, camera.position, NEAR);
-    this.sun.target.position.set(camera.position.x, 0, camera.position.z);
-    this.sun.position.set(camera.position.x - 30, 55, camera.position.z + 24);
+    this.light();
     this.resize();
     this.renderer.render(this.scene, camera);
     Object.assign(this.stats, drawn, { patches: spots.length, jsMs: performance.now() - begin });
     this.stats.pictures++;
     if (this.stats.pictures % 15 === 1) this.tell(people.length);
+  }
+
+  /** Puts the shadows' box where one looks, by whole metres, so that edges of shadows do not swim. */
+  private light(): void {
+    const { camera, yaw } = this.walk;
+    const ahead = 0.7 * SHADED;
+    const x = Math.round(camera.position.x - Math.sin(yaw) * ahead);
+    const z = Math.round(camera.position.z - Math.cos(yaw) * ahead);
+    this.sun.target.position.set(x, 0, z);
+    this.sun.position.set(x - 30, 55, z + 24);
   }
 
   private resize(): void {

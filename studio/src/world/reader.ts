@@ -177,7 +177,7 @@ function readGait(file: Container, stays: Int32Array, crossings: number): Gait {
     steps: file.array("gait_steps", "i16"),
     headings: file.array("gait_headings", "i16"),
     crossingPhases: file.array("crossing_phases", "f32"),
-    paces: file.array("cycle_paces", "f32"),
+    paces: readPaces(file),
     prints: file.has("gait_prints") ? file.array("gait_prints", "f32") : null,
     swings: file.has("gait_swings") ? file.array("gait_swings", "f32") : null,
     links: new Int32Array(),
@@ -190,6 +190,7 @@ function readGait(file: Container, stays: Int32Array, crossings: number): Gait {
     ["gait_rotations", gait.rotations.length, poses * joints.length * 4],
     ["gait_hips", gait.hips.length, poses * 3],
     ["crossing_phases", gait.crossingPhases.length, crossings],
+    ["crossing_paces", gait.paces.length, crossings],
     ["gait_prints", gait.prints?.length ?? 0, gait.prints || gait.swings ? gait.speeds.length * 4 : 0],
     ["gait_swings", gait.swings?.length ?? 0, gait.prints || gait.swings ? poses * 4 : 0],
   ];
@@ -197,6 +198,13 @@ function readGait(file: Container, stays: Int32Array, crossings: number): Gait {
     if (found !== expected) throw new FileProblem(`array ${name}`, `expected ${expected} numbers, found ${found}`);
   }
   return gait;
+}
+
+/** Older worlds have one for every cycle. */
+function readPaces(file: Container): Float32Array {
+  if (file.has("crossing_paces")) return file.array("crossing_paces", "f32");
+  const paces = file.array("cycle_paces", "f32");
+  return Float32Array.from(file.array("crossing_cycles", "u32"), (cycle) => paces[cycle] ?? 1);
 }
 
 function readJoints(file: Container): Bone[] {

@@ -23,7 +23,7 @@ export interface Walker {
   act?: Act | undefined;
 }
 
-/** A clip at some second of it, seen from a place on the ground, and how much it shows through. */
+/** A clip at some second of it, seen from a place on the ground, and how much of the body and of both feet it shows through. */
 export interface Act {
   clip: number;
   secs: number;
@@ -32,6 +32,7 @@ export interface Act {
   z: number;
   heading: number;
   share: number;
+  feet: [number, number];
 }
 
 /** A time slot and the weights of control points in it. */
@@ -111,12 +112,12 @@ export class Sampler {
   }
 
   private body(walker: number, { slot, u }: At, crossing: number, ahead: number) {
-    const { gait, identity } = this.world;
+    const { gait } = this.world;
     if (!gait) return { heading: ahead, phase: 0 };
     const at = gait.tracks[walker] + slot;
     const steps = (gait.steps[at] + (gait.steps[at + 1] - gait.steps[at]) * u) / 512;
     const turn = ((gait.headings[at + 1] - gait.headings[at]) << 16) >> 16;
-    const phase = gait.crossingPhases[crossing] + steps * gait.paces[identity.cycle[crossing]];
+    const phase = gait.crossingPhases[crossing] + steps * gait.paces[crossing];
     return { heading: ((gait.headings[at] + turn * u) * Math.PI) / 32768, phase: phase - Math.floor(phase) };
   }
 

@@ -81,7 +81,7 @@ export class Walks {
     let slot = at.slot;
     const begin = gait.tracks[stay.walker] + slot;
     const now = gait.steps[begin] + (gait.steps[begin + 1] - gait.steps[begin]) * at.u;
-    const pace = gait.paces[this.world.identity.cycle[stay.crossing]];
+    const pace = gait.paces[stay.crossing];
     let target = now + (cycles * STEPS_PER_CYCLE) / pace;
     for (let i = 0; i < FAR; i++) {
       const track = gait.tracks[stay.walker] + slot;
@@ -96,7 +96,9 @@ export class Walks {
       if (!next) break;
       const whole = side === 1 ? stay : next;
       const taken = gait.steps[gait.tracks[whole.walker] + whole.slots];
-      target += side === 1 ? -taken : taken;
+      // What is left goes by the pace of the next stay.
+      const faster = gait.paces[stay.crossing] / gait.paces[next.crossing];
+      target = side === 1 ? (target - taken) * faster : taken + target * faster;
       slot = side === 1 ? 0 : next.slots - 1;
       stay = next;
     }

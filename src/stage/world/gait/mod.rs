@@ -84,8 +84,8 @@ pub struct Gait {
     pub headings: Vec<i16>,
     /// Phase at which every crossing begins.
     pub crossing_phases: Vec<f32>,
-    /// By how much people on a cycle walk faster: a factor about 1.
-    pub cycle_paces: Vec<f32>,
+    /// By how much people step faster from there to the next crossing: a factor about 1.
+    pub crossing_paces: Vec<f32>,
 }
 
 impl GaitTable {
@@ -185,24 +185,26 @@ impl Walking {
 }
 
 impl Gait {
-    /// Whether it fits a world whose walkers stay so many slots, with so many crossings and cycles.
-    pub(super) fn validate(&self, stays: u64, crossings: usize, cycles: usize) -> Result<()> {
+    /// Whether it fits a world whose walkers stay so many slots, with so many crossings.
+    pub(super) fn validate(&self, stays: u64, crossings: usize) -> Result<()> {
         self.table.validate()?;
         let (steps, headings) = (self.steps.len() as u64, self.headings.len() as u64);
         expect(steps == stays, "gait_steps", || format!("{steps} numbers instead of {stays}"))?;
         expect(headings == stays, "gait_headings", || format!("{headings} numbers instead of {stays}"))?;
-        let (phases, paces) = (self.crossing_phases.len(), self.cycle_paces.len());
+        let (phases, paces) = (self.crossing_phases.len(), self.crossing_paces.len());
         expect(phases == crossings, "crossing_phases", || format!("{phases} numbers instead of {crossings}"))?;
-        expect(paces == cycles, "cycle_paces", || format!("{paces} numbers instead of {cycles}"))?;
-        let finite = self.crossing_phases.iter().chain(&self.cycle_paces).all(|v| v.is_finite() && v.abs() < 1e3);
+        expect(paces == crossings, "crossing_paces", || format!("{paces} numbers instead of {crossings}"))?;
+        let finite = self.crossing_phases.iter().chain(&self.crossing_paces).all(|v| v.is_finite() && v.abs() < 1e3);
         expect(finite, "crossing_phases", || "a number that is no phase".into())?;
-        let slow = self.cycle_paces.iter().find(|&&pace| pace < 0.1);
-        expect(slow.is_none(), "cycle_paces", || format!("{slow:?}"))
+        let slow = self.crossing_paces.iter().find(|&&pace| pace < 0.1);
+        expect(slow.is_none(), "crossing_paces", || format!("{slow:?}"))
     }
 
     pub(super) fn bytes(&self) -> usize {
         let table = 16 * self.table.rotations.len() + 28 * self.table.hips.len() + 24 * self.table.speeds.len();
-        table + 2 * (self.steps.len() + self.headings.len()) + 4 * (self.crossing_phases.len() + self.cycle_paces.len())
+        table
+            + 2 * (self.steps.len() + self.headings.len())
+            + 4 * (self.crossing_phases.len() + self.crossing_paces.len())
     }
 }
 

@@ -87,8 +87,7 @@ impl Ways {
             }
         }
         ways.number_lanes(tables, index);
-        let (crossings, cycles) = tables.identities.parts();
-        gait.validate(at, crossings.len(), cycles.len())?;
+        gait.validate(at, tables.identities.parts().0.len())?;
         if !gait.table.prints.is_empty() {
             ways.link(tables, first_crossing);
         }
@@ -150,10 +149,7 @@ impl Ways {
         let kind = world.kind_of(instance);
         let Track { first, lanes, enter, slots } = self.tracks[self.first_walker[kind] as usize + walker];
         let crossing = world.first_crossing[instance] as usize + walker;
-        let of = |gait: &Gait| {
-            let cycle = world.tables.identities.cycle(crossing);
-            (gait.crossing_phases[crossing], gait.cycle_paces[cycle as usize])
-        };
+        let of = |gait: &Gait| (gait.crossing_phases[crossing], gait.crossing_paces[crossing]);
         let (phase, pace) = world.tables.gait.as_ref().map_or((0.0, 1.0), of);
         let (kind, crossing) = (kind as u32, crossing as u32);
         let (slots, enter) = (i32::from(slots), i32::from(enter));
@@ -277,7 +273,9 @@ impl World {
             let Some(next) = self.ways.neighbour(self, &stay, usize::from(side > 0)) else { break };
             let whole = if side > 0 { stay } else { next };
             let taken = f32::from(gait.steps[(whole.first as i32 + whole.slots) as usize]);
-            target += if side > 0 { -taken } else { taken };
+            // What is left goes by the pace of the next stay.
+            let pace = stay.pace / next.pace;
+            target = if side > 0 { (target - taken) * pace } else { taken + target * pace };
             stay = next;
             (slot, side) = within(stay.steps(gait), if side > 0 { 0 } else { stay.slots - 1 }, target);
             if side == 0 {
