@@ -1,6 +1,6 @@
-"""Writes level.glb: a yard, a hall with tables, a terrace with a ramp, a gallery with stairs. Quads, as a level editor has them.
+"""Writes level.glb, in quads as level editors have them: a yard, a hall with tables and stairs, a terrace, a gallery.
 
-    python examples/worlds/level.py examples/worlds/level.glb
+python examples/worlds/level.py examples/worlds/level.glb
 """
 
 import json
