@@ -1,5 +1,6 @@
 //! Worlds from the floors of meshes: a house piece by piece against known areas, which storey it is, and meshes as they should not be.
 
+#[allow(dead_code)]
 mod glb_file;
 
 use std::time::Instant;
