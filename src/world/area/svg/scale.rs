@@ -62,7 +62,7 @@ fn metres(unit: LengthUnit) -> Option<f64> {
 pub(super) fn units(text: &str) -> Result<f64, String> {
     let wrong = || format!("expected a length in units of the drawing, px, mm, cm, in, pt or pc, found {text:.40?}");
     let length = Length::from_str(text.trim()).map_err(|_| wrong())?;
-    if !(length.number.abs() <= LARGEST) {
+    if length.number.is_nan() || length.number.abs() > LARGEST {
         return Err(format!("expected a length of at most {LARGEST:e}, found {text:.40?}"));
     }
     match length.unit {

@@ -69,8 +69,8 @@ impl Fill {
 /// A property of an element itself: of its `style`, else the attribute of that name.
 pub(super) fn property<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     let declared = |text: &'a str| {
-        let pairs = text.split(';').filter_map(|declaration| declaration.split_once(':'));
-        let value = pairs.filter(|(key, _)| key.trim() == name).last()?.1;
+        let mut pairs = text.split(';').filter_map(|declaration| declaration.split_once(':'));
+        let value = pairs.rfind(|(key, _)| key.trim() == name)?.1;
         Some(value.trim().trim_end_matches("!important").trim_end())
     };
     node.attribute("style").and_then(declared).or_else(|| node.attribute(name).map(str::trim))
