@@ -58,6 +58,8 @@ fn main() -> std::io::Result<()> {
     let street = scenes::city(2, true, 1).and_then(|plan| plan.bake("small", &plan.build()?));
     write("world", "small.world", &street.map_err(std::io::Error::other)?.to_bytes())?;
     write("geojson", "square.geojson", include_bytes!("../examples/worlds/square.geojson"))?;
+    write("svg", "plan.svg", include_bytes!("../examples/worlds/plan.svg"))?;
+    write("floor", "level.glb", include_bytes!("../examples/worlds/level.glb"))?;
     write("rig", "small.toml", b"hips = \"Root_M\"\nleft_up_leg = \"Hip_L\"\n")?;
     write("avatar", "small.glb", &avatar::character(&glb))?;
     for take in samples::generate(1).iter().take(3) {

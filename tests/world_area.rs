@@ -4,7 +4,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use crowdquilt::check::world::check_world;
-use crowdquilt::world::{Area, Built, Coordinates, PatternType, Template, WorldScene};
+use crowdquilt::world::{Area, Built, Coordinates, Goal, Layout, PatternType, Shard, Site, Spot, Template, WorldScene};
+use glam::Vec2;
 
 fn templates() -> Vec<Template> {
     vec![
@@ -18,7 +19,7 @@ fn templates() -> Vec<Template> {
 fn area(geojson: &str) -> crowdquilt::Result<Area> {
     let templates = templates();
     let grounds = Area::grounds_of_geojson(geojson, Coordinates::Metres, &templates)?;
-    Ok(Area { templates, grounds, side: 8.0, period: 10.0, seed: 1 })
+    Ok(Area { templates, grounds, side: 8.0, period: 10.0, goals: Vec::new(), notes: Vec::new(), seed: 1 })
 }
 
 fn build(geojson: &str) -> crowdquilt::Result<Built> {
@@ -183,5 +184,116 @@ fn random_rubbish_neither_hangs_nor_panics() {
             }
             Err(error) => assert!(error.to_string().contains("expected"), "seed {seed}: {error}"),
         }
+    }
+}
+
+/// A square with a lane to the east.
+fn square_and_lane() -> Area {
+    area(
+        r#"{"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": [[[0,0],[48,0],[48,48],[0,48],[0,0]]]}},
+        {"type": "Feature", "properties": {"template": "lane"}, "geometry": {"type": "Polygon", "coordinates": [[[40,16],[96,16],[96,32],[40,32],[40,16]]]}}]}"#,
+    )
+    .unwrap()
+}
+
+fn goal(from: Spot, to: Spot, rounds: usize) -> Goal {
+    Goal { from, to, rounds }
+}
+
+#[test]
+fn people_go_there_and_back_on_polygons_too() {
+    // The middle of the map is the origin: the lane begins at x = 0. Nobody goes to a dead end, as there is no way on.
+    let (west, east) = (Vec2::new(-34.0, 8.0), Vec2::new(20.0, 1.0));
+    let goals = vec![
+        goal(Spot::At(west), Spot::At(east), 2),
+        goal(Spot::Template("lane".into()), Spot::Template("place".into()), 1),
+    ];
+    let area = Area { goals, ..square_and_lane() };
+    let built = area.build("goals", &|_, _| true).unwrap();
+    let world = &built.world;
+    let report = check_world(world);
+    assert!(report.ok(), "{report}");
+    assert!(!built.notes.iter().any(|note| note.starts_with("goal")), "{:?}", built.notes);
+    let (from, to) = (world.patch_at(west.as_dvec2()).unwrap(), world.patch_at(east.as_dvec2()).unwrap());
+    let journey = world.journey(from, to, 1000.0).unwrap();
+    let speed = f64::from(west.distance(east)) / (journey.arrival - journey.departure);
+    assert!((0.3..1.6).contains(&speed), "{speed} m/s");
+    // Who goes there comes back: on one cycle without end.
+    let back = world.journey(to, from, journey.arrival).unwrap();
+    assert!(back.arrival > journey.arrival);
+    // Nothing else is changed by goals: cells that no round passes are the same.
+    let plain = square_and_lane().build("goals", &|_, _| true).unwrap().world;
+    assert_eq!(plain.instances(), world.instances());
+    assert!(plain != *world);
+    // In pieces, by somebody who knows the scene and which cells failed, it is the same world.
+    let scene = WorldScene { name: "goals".into(), layout: Layout::Area(area) };
+    let mut site = Site::new(&scene).unwrap();
+    while !site.left().is_empty() {
+        let worker = Site::after(&scene, site.failures()).unwrap();
+        assert_eq!(worker.left(), site.left());
+        site.take(Shard::solve(&worker, site.left(), 1, &|_| true).unwrap()).unwrap();
+        site.end_round().unwrap();
+    }
+    assert!(site.bake().unwrap().world == *world);
+}
+
+#[test]
+fn goals_that_are_nowhere_on_the_ground_are_named() {
+    for (from, expected) in [
+        (Spot::At(Vec2::new(900.0, 0.0)), "goal 2: expected a place on the ground, found At(Vec2(900.0, 0.0))"),
+        (Spot::Template("moon".into()), "goal 2: expected a place on the ground, found Template(\"moon\")"),
+    ] {
+        let sound = goal(Spot::Template("lane".into()), Spot::Template("place".into()), 1);
+        let goals = vec![sound, goal(from, Spot::Template("place".into()), 1)];
+        let error = Area { goals, ..square_and_lane() }.build("goals", &|_, _| true).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+/// A scene that reads its ground from a file.
+fn scene(area: &str) -> crowdquilt::Result<WorldScene> {
+    let text = format!(
+        "[area]\n{area}\n[[templates]]\nname = 'square'\nborders.square = {{ type = 'mixed', in = 3, out = 3 }}"
+    );
+    WorldScene::from_toml(&text, &Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/worlds"))
+}
+
+#[test]
+fn scenes_say_how_their_files_are_meant() {
+    let refused = |area: &str, expected: &str| {
+        let error = scene(area).unwrap_err().to_string();
+        assert!(error.contains(expected) && error.contains("line 1"), "expected {expected:?} in {error:?}");
+    };
+    assert!(scene("file = 'plan.svg'\nmetres_per_unit = 0.1").is_ok());
+    assert!(scene("file = 'level.glb'\nstep_m = 0.2").is_ok());
+    refused("file = 'plan.svg'", "plan.svg: svg: expected metres_per_unit");
+    refused("file = 'plan.svg'\ncoordinates = 'metres'", "expected coordinates with GeoJSON only, found SVG");
+    refused("file = 'square.geojson'", "expected coordinates = \"metres\" or \"degrees\" for GeoJSON, found none");
+    refused(
+        "file = 'square.geojson'\ncoordinates = 'feet'",
+        "expected coordinates \"metres\" or \"degrees\", found \"feet\"",
+    );
+    refused("file = 'level.glb'\nmetres_per_unit = 2", "expected metres_per_unit with SVG only, found glTF");
+    refused("file = 'plan.svg'\nmetres_per_unit = 0.1\nhead_m = 2", "height_m with glTF only, found SVG");
+    refused("file = 'level.glb'\nhead_m = 20", "expected head_m from 1 to 10, found 20");
+    refused(
+        "file = 'city.png'",
+        "expected an area: GeoJSON (.geojson), SVG (.svg), glTF (.gltf, .glb); found none of them (.png)",
+    );
+    refused("file = 'nowhere.svg'", "nowhere.svg");
+}
+
+#[test]
+fn the_examples_of_drawings_and_floors_are_populated_and_right() {
+    for (name, templates, least) in [("plan", 3, 150), ("level", 3, 100)] {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/worlds/{name}.toml"));
+        let built = WorldScene::load(&file).unwrap().build(&|_, _| true).unwrap();
+        let report = check_world(&built.world);
+        assert!(report.ok(), "{name}: {report}");
+        assert!(walkers(&built) > least, "{name}: {} walkers; {:?}", walkers(&built), built.notes);
+        let found: std::collections::BTreeSet<usize> =
+            (0..built.world.kinds()).map(|k| built.world.kind(k).template()).collect();
+        assert_eq!(found.len(), templates, "{name}");
     }
 }

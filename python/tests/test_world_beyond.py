@@ -51,9 +51,15 @@ def test_a_scene_says_goals_and_periods() -> None:
     assert found is not None and found[2] > found[1] >= 500.0
     with pytest.raises(cq.CrowdquiltError, match=r"expected a patch at \(900, 4\)"):
         cq.world.journey(world, (900.0, 4.0), (36.0, 20.0), 500.0)
-    area = SCENES / "square.toml"
-    with pytest.raises(cq.CrowdquiltError, match="goals on a map only"):
-        cq.WorldScene.from_toml("goals = [{ from = 'square', to = 'park', rounds = 1 }]\n" + area.read_text(), SCENES)
+
+
+def test_goals_lead_over_polygons_as_well() -> None:
+    text = "goals = [{ from = 'square', to = 'park', rounds = 1 }]\n" + (SCENES / "square.toml").read_text()
+    world, notes = cq.world.build(cq.WorldScene.from_toml(text, SCENES))
+    assert cq.world.check(world).ok
+    assert not any(note.startswith("goal") for note in notes)
+    with pytest.raises(cq.CrowdquiltError, match=r"expected a template or a place \[x, z\], found \"moon\""):
+        cq.WorldScene.from_toml(text.replace("'park'", "'moon'"), SCENES)
 
 
 def test_a_spectator_is_walked_around(street: cq.World) -> None:

@@ -1,9 +1,10 @@
-//! glTF 2.0 files taken apart, for captures and characters alike: the container, and the numbers that accessors stand
-//! for. Every reference is followed through [`find`], every range is checked.
+//! glTF 2.0 files taken apart, for captures, characters and floors alike: the container, the tree of nodes, and the numbers that
+//! accessors stand for. Every reference is followed through [`find`], every range is checked.
 
 mod buffers;
 mod container;
 mod data;
+mod nodes;
 
 use gltf_json::Index;
 
@@ -12,6 +13,7 @@ use crate::{Error, Result};
 pub(crate) use buffers::embedded;
 pub(crate) use container::{open, version};
 pub(crate) use data::{Data, Numbers, Tables};
+pub(crate) use nodes::{from_the_top, local};
 
 pub(crate) fn bad(place: impl Into<String>, problem: impl Into<String>) -> Error {
     Error::invalid("glTF", place, problem)

@@ -4,24 +4,20 @@
 //! crossings is chosen first (the quickest, by walking speed), and the patches on it are solved with its connections. Every
 //! crossing is passed once per period: a round that takes m periods carries m people, who go there and back for ever.
 
-use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+mod net;
+
+use std::collections::BTreeMap;
 
 use glam::Vec2;
 use rand::RngExt;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::{FramePatch, Plan, Port};
+use super::goal_solve::{Connections, holds};
+use super::{CrowdPatch, FramePatch, Plan};
 use crate::Result;
 use crate::stage::world::mix;
-
-/// Speed that rounds are planned with, m/s; who has to be faster is let through a period later.
-const PACE: f32 = 1.3;
-/// Least time in a patch, seconds.
-const LEAST: f32 = 4.0;
-/// A round of a longer way is none.
-const MOST_STEPS: usize = 100_000;
+pub(super) use net::Net;
 
 /// People who go from one place to another, and back.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -34,7 +30,7 @@ pub struct Goal {
     pub rounds: usize,
 }
 
-/// A place of a map.
+/// A place of a map or an area.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Spot {
     /// The patch at a place, metres.
@@ -54,13 +50,63 @@ pub struct Round {
     pub there: usize,
 }
 
-/// The rounds of a plan, and what follows from them.
+/// The rounds of a plan or an area, and what follows from them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Rounds {
     /// Those that were found.
     pub found: Vec<Round>,
     /// Input and output of every connection that must be, by cell.
     pub connections: BTreeMap<usize, Vec<(usize, usize)>>,
+}
+
+impl Rounds {
+    /// The rounds for `goals`; `cells_of` are the cells of a place, at least one.
+    pub(super) fn find(goals: &[Goal], seed: u64, cells_of: impl Fn(&Spot) -> Vec<usize>, mut net: Net) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(mix(seed, u64::from_le_bytes(*b"   goals")));
+        let mut rounds = Self::default();
+        for (goal, wish) in goals.iter().enumerate() {
+            let (from, to) = (cells_of(&wish.from), cells_of(&wish.to));
+            for _ in 0..wish.rounds {
+                // Another pair of places if there is no way between these.
+                let mut draw = |cells: &[usize]| cells[rng.random_range(0..cells.len())];
+                let found = (0..4).find_map(|_| net.round(draw(&from), draw(&to)));
+                let Some((steps, there)) = found else { break };
+                net.take(&steps, &mut rounds.connections);
+                rounds.found.push(Round { goal, steps: steps.into_iter().map(|s| (s.cell, s.input)).collect(), there });
+            }
+        }
+        rounds
+    }
+
+    /// The connections that a cell must have.
+    pub(super) fn of_cell(&self, cell: usize) -> &Connections {
+        self.connections.get(&cell).map_or(&[], Vec::as_slice)
+    }
+
+    /// What became of `goals`, in words, where that is not what they ask for; by the patch of every cell.
+    pub(super) fn notes<'a>(&self, goals: &[Goal], patch: impl Fn(usize) -> &'a CrowdPatch) -> Vec<String> {
+        let kept = |step: &(usize, usize)| holds(patch(step.0), self.of_cell(step.0));
+        let note = |(goal, wish): (usize, &Goal)| {
+            let found = self.found.iter().filter(|round| round.goal == goal);
+            let kept = found.filter(|round| round.steps.iter().all(kept)).count();
+            let text = format!("goal {}: {kept} of {} rounds have a way there and back", goal + 1, wish.rounds);
+            (kept < wish.rounds).then_some(text)
+        };
+        goals.iter().enumerate().filter_map(note).collect()
+    }
+}
+
+/// What is wrong with goals on `ground`, if anything: which, and what.
+pub(super) fn goal_problem(
+    goals: &[Goal],
+    ground: &str,
+    cells_of: impl Fn(&Spot) -> Vec<usize>,
+) -> Option<(usize, String)> {
+    let odd = |spot: &Spot| cells_of(spot).is_empty().then(|| format!("expected a place on {ground}, found {spot:?}"));
+    goals.iter().enumerate().find_map(|(index, goal)| {
+        let problem = odd(&goal.from).or_else(|| odd(&goal.to));
+        Some((index, problem?))
+    })
 }
 
 impl Plan {
@@ -72,21 +118,30 @@ impl Plan {
         if self.goals.is_empty() || self.goal_problem().is_some() {
             return Ok(Rounds::default());
         }
-        let mut net = Net::new(self)?;
-        let mut rng = ChaCha8Rng::seed_from_u64(mix(self.seed, u64::from_le_bytes(*b"   goals")));
-        let mut rounds = Rounds::default();
-        for (goal, wish) in self.goals.iter().enumerate() {
-            let (from, to) = (self.cells_of(&wish.from), self.cells_of(&wish.to));
-            for _ in 0..wish.rounds {
-                // Another pair of places if there is no way between these.
-                let mut draw = |cells: &[usize]| cells[rng.random_range(0..cells.len())];
-                let found = (0..4).find_map(|_| net.round(draw(&from), draw(&to)));
-                let Some((steps, there)) = found else { break };
-                net.take(&steps, &mut rounds.connections);
-                rounds.found.push(Round { goal, steps: steps.into_iter().map(|s| (s.cell, s.input)).collect(), there });
-            }
-        }
-        Ok(rounds)
+        Ok(Rounds::find(&self.goals, self.seed, |spot| self.cells_of(spot), self.net()?))
+    }
+
+    /// All crossings of the map. None leads over its border, so that rounds come back to where they began also where the map
+    /// repeats.
+    fn net(&self) -> Result<Net> {
+        let (columns, rows) = self.size();
+        let beyond = |cell: usize, edge: usize| {
+            let (column, row) = (cell % columns, cell / columns);
+            let other = match edge {
+                0 if row > 0 => cell - columns,
+                1 if column + 1 < columns => cell + 1,
+                2 if row + 1 < rows => cell + columns,
+                3 if column > 0 => cell - 1,
+                _ => return None,
+            };
+            Some((other, (edge + 2) % 4))
+        };
+        let all = || 0..columns * rows;
+        let frames =
+            all().map(|cell| self.frame(cell % columns, cell / columns)).collect::<Result<Vec<FramePatch>>>()?;
+        let beyond = all().map(|cell| (0..4).map(|edge| beyond(cell, edge)).collect()).collect();
+        let single = |cell: usize| self.repeats_of(self.cells[cell / columns][cell % columns]) == 1;
+        Ok(Net::new(frames, beyond, all().map(single).collect()))
     }
 
     /// Cells of a place.
@@ -106,167 +161,8 @@ impl Plan {
 
     /// What is wrong with the goals, if anything: which, and what.
     pub(super) fn goal_problem(&self) -> Option<(usize, String)> {
-        let odd = |spot: &Spot| {
-            self.cells_of(spot).is_empty().then(|| format!("expected a place on the map, found {spot:?}"))
-        };
-        self.goals.iter().enumerate().find_map(|(index, goal)| {
-            let problem = odd(&goal.from).or_else(|| odd(&goal.to));
-            Some((index, problem?))
-        })
+        goal_problem(&self.goals, "the map", |spot| self.cells_of(spot))
     }
-}
-
-/// A connection: in a cell, from an input to an output.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Step {
-    cell: usize,
-    input: usize,
-    output: usize,
-}
-
-/// All crossings of a map, and which of them are taken.
-struct Net {
-    columns: usize,
-    frames: Vec<FramePatch>,
-    inputs: Vec<Vec<Port>>,
-    outputs: Vec<Vec<Port>>,
-    /// Of every cell, inputs and outputs that are on a round.
-    taken: Vec<[Vec<bool>; 2]>,
-    rows: usize,
-    /// Whether connections of a cell can be chosen: not if it repeats within a period.
-    free: Vec<bool>,
-}
-
-impl Net {
-    fn new(plan: &Plan) -> Result<Self> {
-        let (columns, rows) = plan.size();
-        let frames: Vec<FramePatch> =
-            (0..columns * rows).map(|cell| plan.frame(cell % columns, cell / columns)).collect::<Result<_>>()?;
-        let inputs: Vec<Vec<Port>> = frames.iter().map(|f| f.inputs().collect()).collect();
-        let outputs: Vec<Vec<Port>> = frames.iter().map(|f| f.outputs().collect()).collect();
-        let free = |(a, b): (&Vec<Port>, &Vec<Port>)| [vec![false; a.len()], vec![false; b.len()]];
-        let taken = inputs.iter().zip(&outputs).map(free).collect();
-        let single = |cell: usize| plan.repeats_of(plan.cells[cell / columns][cell % columns]) == 1;
-        let free = (0..columns * rows).map(single).collect();
-        Ok(Self { columns, rows, frames, inputs, outputs, taken, free })
-    }
-
-    /// Cell and input on the other side of an output; none over the border of the map, so that rounds come back to where they
-    /// began also where the map repeats.
-    fn beyond(&self, cell: usize, output: usize) -> Option<(usize, usize)> {
-        let port = self.outputs[cell][output];
-        let (column, row) = (cell % self.columns, cell / self.columns);
-        let other = match port.edge {
-            0 if row > 0 => cell - self.columns,
-            1 if column + 1 < self.columns => cell + 1,
-            2 if row + 1 < self.rows => cell + self.columns,
-            3 if column > 0 => cell - 1,
-            _ => return None,
-        };
-        let twin = Port { edge: (port.edge + 2) % 4, index: port.index };
-        self.inputs[other].iter().position(|&p| p == twin).map(|input| (other, input))
-    }
-
-    /// Seconds from an input to an output, at a walk.
-    fn secs(&self, cell: usize, input: usize, output: usize) -> f32 {
-        let frame = &self.frames[cell];
-        let (a, b) = (self.inputs[cell][input], self.outputs[cell][output]);
-        let (from, to) = (frame.patterns[a.edge].inputs[a.index], frame.patterns[b.edge].outputs[b.index]);
-        let place = |edge: usize, along: f32| {
-            let (begin, end) = (frame.outline[edge], frame.outline[(edge + 1) % frame.outline.len()]);
-            begin + (end - begin).normalize() * along
-        };
-        let least = (place(a.edge, from.place).distance(place(b.edge, to.place)) / PACE).max(LEAST);
-        let (period, wait) = (frame.period(), to.time - from.time);
-        wait + ((least - wait) / period).ceil().max(0.0) * period
-    }
-
-    /// Whether the other people of a cell can still all leave by other edges than they came, once these are taken as well.
-    fn leaves_ways(&self, cell: usize, input: usize, output: usize) -> bool {
-        let [inputs, outputs] = &self.taken[cell];
-        let mut edges = vec![0_usize; self.frames[cell].patterns.len()];
-        let free = |taken: &[bool], own: usize| {
-            taken.iter().enumerate().filter(move |&(i, t)| !t && i != own).map(|(i, _)| i).collect::<Vec<_>>()
-        };
-        let (left, leaving) = (free(inputs, input), free(outputs, output));
-        left.iter().for_each(|&i| edges[self.inputs[cell][i].edge] += 1);
-        leaving.iter().for_each(|&o| edges[self.outputs[cell][o].edge] += 1);
-        edges.iter().all(|&count| count <= left.len())
-    }
-
-    /// The connections that an input may have.
-    fn steps(&self, cell: usize, input: usize) -> impl Iterator<Item = Step> + '_ {
-        let edge = self.inputs[cell][input].edge;
-        let outputs = 0..self.outputs[cell].len();
-        let open = move |&output: &usize| {
-            self.free[cell]
-                && self.outputs[cell][output].edge != edge
-                && !self.taken[cell][1][output]
-                && self.leaves_ways(cell, input, output)
-        };
-        outputs.filter(open).map(move |output| Step { cell, input, output })
-    }
-
-    /// A round from a cell to another and back: its steps, and which of them is there.
-    fn round(&self, from: usize, to: usize) -> Option<(Vec<Step>, usize)> {
-        let inputs = (0..self.inputs[from].len()).filter(|&i| !self.taken[from][0][i]);
-        inputs.filter(|_| from != to).find_map(|input| {
-            let away = self.quickest((from, input), &[], |at| at.0 == to)?;
-            let last = away.last()?;
-            let there = self.beyond(last.cell, last.output)?;
-            let back = self.quickest(there, &away, |at| at == (from, input))?;
-            let count = away.len();
-            Some((away.into_iter().chain(back).collect(), count))
-        })
-    }
-
-    /// The quickest way from a crossing to one that is a `goal`, through cells that are not on the way `before`.
-    fn quickest(
-        &self,
-        begin: (usize, usize),
-        before: &[Step],
-        goal: impl Fn((usize, usize)) -> bool,
-    ) -> Option<Vec<Step>> {
-        // No cell twice on a round: connections within a cell would have to be weighed against each other.
-        let used = |cell: usize| before.iter().skip(1).any(|step| step.cell == cell);
-        let mut best: BTreeMap<(usize, usize), (u32, Option<Step>)> = BTreeMap::from([(begin, (0, None))]);
-        let mut queue = BinaryHeap::from([Reverse((0_u32, begin))]);
-        while let Some(Reverse((cost, at))) = queue.pop() {
-            if at != begin && goal(at) {
-                return Some(trace(&best, at));
-            }
-            if best[&at].0 < cost || best.len() > MOST_STEPS {
-                continue;
-            }
-            for step in self.steps(at.0, at.1) {
-                let Some(next) = self.beyond(step.cell, step.output) else { continue };
-                let closes = goal(next);
-                let free = !self.taken[next.0][0][next.1] && (closes || !(used(next.0) || next.0 == begin.0));
-                let cost = cost + (self.secs(step.cell, step.input, step.output) * 1000.0) as u32;
-                if free && best.get(&next).is_none_or(|&(known, _)| cost < known) {
-                    best.insert(next, (cost, Some(step)));
-                    queue.push(Reverse((cost, next)));
-                }
-            }
-        }
-        None
-    }
-
-    /// Takes the connections of a round.
-    fn take(&mut self, steps: &[Step], connections: &mut BTreeMap<usize, Vec<(usize, usize)>>) {
-        for step in steps {
-            self.taken[step.cell][0][step.input] = true;
-            self.taken[step.cell][1][step.output] = true;
-            connections.entry(step.cell).or_default().push((step.input, step.output));
-        }
-    }
-}
-
-/// The steps that led to a crossing.
-fn trace(best: &BTreeMap<(usize, usize), (u32, Option<Step>)>, end: (usize, usize)) -> Vec<Step> {
-    let mut steps: Vec<Step> = std::iter::successors(best[&end].1, |step| best[&(step.cell, step.input)].1).collect();
-    steps.reverse();
-    steps
 }
 
 #[cfg(test)]

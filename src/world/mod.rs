@@ -26,11 +26,11 @@
 //! | `lattice.rs` | who is who over all borders and periods (see [`Identities`]); endless worlds |
 //! | `bake.rs` | what is solved, as an immutable [`World`](crate::stage::World) |
 //! | `template.rs`, `plan.rs`, `furnish.rs` | what patches contain, which is where, the world that follows |
-//! | `area/` | worlds from walkable polygons: repaired, cut into convex cells |
+//! | `area/` | worlds from walkable polygons of maps, drawings and floors of meshes: repaired, cut into convex cells |
 //! | `scene.rs` | scene files: templates, and a map in characters or a picture |
 //! | `survey.rs`, `site.rs`, `shard.rs` | a build in pieces: which patches there are to solve, in any order and by anybody; files of some of them |
 //! | `gait.rs` | walking cycles out of captures, and steps for everybody |
-//! | `goal.rs`, `goal_solve.rs`, `journey.rs` | walkers who go somewhere; who gets from one place to another soonest |
+//! | `goal.rs`, `goal/`, `goal_solve.rs`, `journey.rs` | walkers who go somewhere; who gets from one place to another soonest |
 //! | `periods.rs`, `day.rs` | several periods in one world; density that follows the time of day |
 //! | `spectator/` | people step aside for somebody who walks among them |
 //! | `rich/` | what people do who do something else than walk, out of a patch set |
@@ -75,7 +75,7 @@ mod template;
 mod valid;
 
 pub use crate::stage::world::{Identities, Link, Person};
-pub use area::{Area, Built, Coordinates, Ground};
+pub use area::{Area, Built, Coordinates, FloorOptions, Ground, Grounds, Reading, Sign};
 pub use bake::{Placement, bake};
 pub use day::Day;
 pub use frame::{Border, FramePatch, Standing, StaticObject};

@@ -225,9 +225,7 @@ impl Plan {
     /// # Errors
     /// If the patterns have no room, are not balanced, or no way is found even without objects.
     pub fn patch(&self, column: usize, row: usize) -> Result<CrowdPatch> {
-        let rounds = self.rounds()?;
-        let connections = rounds.connections.get(&(row * self.size().0 + column));
-        self.connected(column, row, connections.map_or(&[], Vec::as_slice))
+        self.connected(column, row, self.rounds()?.of_cell(row * self.size().0 + column))
     }
 
     /// The same with some connections given; without them if no way is found with them.

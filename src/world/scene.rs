@@ -4,6 +4,7 @@
 //! characters, or a picture whose colours are the templates' (a palette image, "Crowd Patches" (2009), section 5.1).
 //! All problems are told at once, each with its line.
 
+mod area;
 mod border;
 mod palette;
 
@@ -13,10 +14,9 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::{
-    Amount, Area, Built, Coordinates, Furnishing, Gathering, Goal, Meeting, Plan, Prototype, Site, Spot, Template,
-};
+use super::{Amount, Area, Built, Furnishing, Gathering, Goal, Meeting, Plan, Prototype, Site, Spot, Template};
 use crate::{Error, Result};
+use area::AreaText;
 use border::BorderText;
 
 /// A world to build.
@@ -59,13 +59,6 @@ struct SceneText {
     #[serde(default)]
     goals: Vec<Spanned<GoalText>>,
     templates: Vec<Spanned<TemplateText>>,
-}
-
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct AreaText {
-    file: String,
-    coordinates: String,
 }
 
 #[derive(serde::Deserialize)]
@@ -222,7 +215,7 @@ impl WorldScene {
         }
         let layout = match (&raw.map, &raw.area) {
             (Some(map), None) => Layout::Map(raw.plan(templates, cells(&raw, map, folder, &mut bad))),
-            (None, Some(area)) => Layout::Area(raw.area(area, templates, folder, &mut bad)),
+            (None, Some(area)) => Layout::Area(area::area(&raw, area, templates, folder, &mut bad)),
             _ => {
                 bad.found.push((1, "expected either a map or an area".into()));
                 Layout::Map(raw.plan(Vec::new(), Vec::new()))
@@ -287,33 +280,6 @@ impl SceneText {
             goals: self.goals.iter().map(|g| g.get_ref().goal()).collect(),
             seed: self.seed,
         }
-    }
-
-    fn area(&self, area: &Spanned<AreaText>, templates: Vec<Template>, folder: &Path, bad: &mut Problems) -> Area {
-        let coordinates = match area.get_ref().coordinates.as_str() {
-            "metres" => Coordinates::Metres,
-            "degrees" => Coordinates::Degrees,
-            other => {
-                bad.add(area.span(), format!("expected coordinates \"metres\" or \"degrees\", found {other:?}"));
-                Coordinates::Metres
-            }
-        };
-        if let Some(goal) = self.goals.first() {
-            bad.add(goal.span(), "expected goals on a map only, found one on an area".into());
-        }
-        if self.templates.iter().any(|t| t.get_ref().repeats != 1) {
-            bad.add(area.span(), "expected templates that repeat on a map only, found one on an area".into());
-        }
-        if self.endless {
-            bad.add(area.span(), "expected an area to end, found endless = true".into());
-        }
-        let grounds = Area::load_geojson(&folder.join(&area.get_ref().file), coordinates, &templates);
-        let grounds = grounds.unwrap_or_else(|error| {
-            bad.add(area.span(), error.to_string());
-            Vec::new()
-        });
-        let (side, period) = (*self.cell_m.get_ref(), *self.period_secs.get_ref());
-        Area { templates, grounds, side, period, seed: self.seed }
     }
 }
 

@@ -151,7 +151,7 @@ impl Site {
 
     fn next(&mut self, failed: Vec<usize>) -> Result<()> {
         self.left = match (&mut self.works, &self.scene.layout) {
-            (Kinds::Area(works), Layout::Area(area)) if !failed.is_empty() => works.next(area, &failed)?,
+            (Kinds::Area(works), Layout::Area(area)) => works.next(area, &failed)?,
             _ => Vec::new(),
         };
         self.left.iter().for_each(|&cell| self.found[cell] = None);

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec2;
 
-use super::goal_solve::{Connections, holds};
-use super::{CrowdPatch, FramePatch, Goal, Lattice, Plan, Rounds};
+use super::{CrowdPatch, FramePatch, Lattice, Plan, Rounds};
 use crate::Result;
 
 /// The patch kinds of a plan.
@@ -57,24 +56,12 @@ impl Survey {
     /// The patch of a kind.
     pub fn solve(&self, plan: &Plan, kind: usize) -> Result<CrowdPatch> {
         let (column, row) = self.place(plan, kind);
-        plan.connected(column, row, self.connections(self.first[kind]))
-    }
-
-    /// The connections that a cell must have.
-    fn connections(&self, cell: usize) -> &Connections {
-        self.rounds.connections.get(&cell).map_or(&[], Vec::as_slice)
+        plan.connected(column, row, self.rounds.of_cell(self.first[kind]))
     }
 
     /// What became of the plan's goals, in words, where that is not what it asks for.
     pub fn notes(&self, plan: &Plan, kinds: &[CrowdPatch]) -> Vec<String> {
-        let kept = |step: &(usize, usize)| holds(&kinds[self.cells[step.0]], self.connections(step.0));
-        let note = |(goal, wish): (usize, &Goal)| {
-            let found = self.rounds.found.iter().filter(|round| round.goal == goal);
-            let kept = found.filter(|round| round.steps.iter().all(kept)).count();
-            let text = format!("goal {}: {kept} of {} rounds have a way there and back", goal + 1, wish.rounds);
-            (kept < wish.rounds).then_some(text)
-        };
-        plan.goals.iter().enumerate().filter_map(note).collect()
+        self.rounds.notes(&plan.goals, |cell| &kinds[self.cells[cell]])
     }
 
     /// The patches of all kinds, joined.

@@ -28,7 +28,7 @@ from crowdquilt.report import row_dict
     ),
 )
 def make_world(
-    scene: Annotated[Path, typer.Argument(help="Scene of a world (.toml): templates, and a map of where which is.")],
+    scene: Annotated[Path, typer.Argument(help="Scene of a world (.toml): templates, and where which is.")],
     out: Annotated[Path, typer.Option("--out", "-o", help="World to write (.world).")],
     seed: Annotated[int | None, typer.Option(min=0, help="Same seed, same world; the scene's if not given.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw it from above: flows and densities.")] = None,

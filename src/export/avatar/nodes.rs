@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use glam::{Affine3A, Mat4, Quat, Vec3};
-use gltf_json::{Index, Node, Root, Skin};
+use glam::{Affine3A, Quat, Vec3};
+use gltf_json::{Index, Root, Skin};
 
 use crate::Result;
 use crate::export::actor::Bone;
-use crate::gltf::{bad, find};
+use crate::gltf::{bad, find, from_the_top, local};
 
 /// Scales that differ by less than this part count as even.
 const EVEN: f32 = 2e-3;
@@ -32,7 +32,7 @@ impl Parts {
     /// # Errors
     /// No skinned mesh; nodes that go round in circles; joints that are not in the scene.
     pub fn of(json: &Root) -> Result<Self> {
-        let (order, parents) = from_the_top(json)?;
+        let (order, parents) = from_the_top(&json.nodes, &json.scenes, json.scene)?;
         let skinned = |&n: &usize| json.nodes[n].skin.filter(|_| json.nodes[n].mesh.is_some()).map(|skin| (n, skin));
         let skinned: Vec<(usize, Index<Skin>)> = order.iter().filter_map(skinned).collect();
         if skinned.is_empty() {
@@ -96,26 +96,6 @@ impl Parts {
     }
 }
 
-/// Nodes of the scene that is shown, parents before children; and the parents of all nodes.
-fn from_the_top(json: &Root) -> Result<(Vec<usize>, Vec<Option<usize>>)> {
-    let scene = find(&json.scenes, json.scene.unwrap_or(Index::new(0)), "scenes", "scene")?;
-    let mut parents = vec![None; json.nodes.len()];
-    let mut seen = vec![false; json.nodes.len()];
-    let mut order = Vec::new();
-    let mut open: Vec<(Index<Node>, Option<usize>)> = scene.nodes.iter().rev().map(|&n| (n, None)).collect();
-    while let Some((index, parent)) = open.pop() {
-        let place = || parent.map_or("scene".into(), |p| format!("node {p}"));
-        let (n, node) = (index.value(), find(&json.nodes, index, "nodes", &place())?);
-        if std::mem::replace(&mut seen[n], true) {
-            return Err(bad(format!("node {n}"), "expected one parent, found two"));
-        }
-        parents[n] = parent;
-        order.push(n);
-        open.extend(node.children.iter().flatten().rev().map(|&child| (child, Some(n))));
-    }
-    Ok((order, parents))
-}
-
 /// Which nodes are joints of the skins in use.
 fn joints(json: &Root, order: &[usize], skinned: &[(usize, Index<Skin>)]) -> Result<Vec<bool>> {
     let mut shown = vec![false; json.nodes.len()];
@@ -138,16 +118,6 @@ fn joints(json: &Root, order: &[usize], skinned: &[(usize, Index<Skin>)]) -> Res
         }
     }
     Ok(joint)
-}
-
-fn local(node: &Node) -> Mat4 {
-    if let Some(matrix) = node.matrix {
-        return Mat4::from_cols_array(&matrix);
-    }
-    let rotation = node.rotation.map_or(Quat::IDENTITY, |q| Quat::from_array(q.0));
-    let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { Quat::IDENTITY };
-    let (scale, place) = (node.scale.map_or(Vec3::ONE, Vec3::from), node.translation.map_or(Vec3::ZERO, Vec3::from));
-    Mat4::from_scale_rotation_translation(scale, rotation, place)
 }
 
 /// Global rest transforms of the bones; and apart from them the rotations, which uneven rounding cannot bend.

@@ -25,6 +25,14 @@ pub(super) struct Cell {
     pub template: usize,
 }
 
+impl Cell {
+    /// Whether a place is in it or on its border.
+    pub fn contains(&self, place: DVec2) -> bool {
+        let n = self.corners.len();
+        (0..n).all(|i| (self.corners[(i + 1) % n] - self.corners[i]).perp_dot(place - self.corners[i]) >= 0.0)
+    }
+}
+
 /// Corners turn at least this much, so that rounding never makes them turn back: sine of two degrees.
 const TURN: f64 = 0.035;
 
@@ -59,8 +67,8 @@ fn inside(ground: &MultiPolygon<f64>, p: DVec2) -> bool {
 
 /// The template of the ground at a place; where several lie on each other the first.
 fn template(ground: &Walkable, p: DVec2) -> usize {
-    let found = ground.by_template.iter().find(|(_, polygons)| inside(polygons, p));
-    found.or(ground.by_template.first()).map_or(0, |(template, _)| *template)
+    let found = ground.layers.iter().find(|(_, polygons)| inside(polygons, p));
+    found.or(ground.layers.first()).map_or(0, |(template, _)| *template)
 }
 
 /// Corners of outlines, cut into pieces no longer than a cell, and points spread over the inside; and the pieces.
@@ -146,7 +154,8 @@ fn join(places: &[DVec2], faces: &[([usize; 3], usize)], side: f64) -> Vec<(Vec<
     cells.into_iter().enumerate().filter_map(|(i, cell)| Some((cell?, faces[i].1))).collect()
 }
 
-fn find(owner: &mut [usize], face: usize) -> usize {
+/// Who owns all that something was joined with.
+pub(super) fn find(owner: &mut [usize], face: usize) -> usize {
     let mut at = face;
     while owner[at] != at {
         owner[at] = owner[owner[at]];

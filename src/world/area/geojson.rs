@@ -3,7 +3,6 @@
 use serde_json::Value;
 
 use super::{Coordinates, Ground};
-use crate::world::Template;
 use crate::{Error, Result};
 
 /// Nobody means coordinates beyond this, metres.
@@ -12,7 +11,7 @@ const FARTHEST: f64 = 1e7;
 const DEGREE: f64 = 111_195.0;
 
 /// All polygons, about the middle of all coordinates.
-pub(super) fn grounds(text: &str, coordinates: Coordinates, templates: &[Template]) -> Result<Vec<Ground>> {
+pub(super) fn grounds(text: &str, coordinates: Coordinates, templates: &[&str]) -> Result<Vec<Ground>> {
     let bad = |place: String, problem: String| Error::invalid("geojson", place, problem);
     let root: Value =
         serde_json::from_str(text).map_err(|e| bad(format!("line {}", e.line()), format!("expected GeoJSON: {e}")))?;
@@ -36,13 +35,12 @@ pub(super) fn grounds(text: &str, coordinates: Coordinates, templates: &[Templat
     Ok(found)
 }
 
-fn read_feature(feature: &Value, place: &str, templates: &[Template], found: &mut Vec<Ground>) -> Result<()> {
+fn read_feature(feature: &Value, place: &str, templates: &[&str], found: &mut Vec<Ground>) -> Result<()> {
     let name = &feature["properties"]["template"];
     let template = match name.as_str() {
         None => 0,
-        Some(name) => templates.iter().position(|t| t.name == name).ok_or_else(|| {
-            let names: Vec<&str> = templates.iter().map(|t| t.name.as_str()).collect();
-            Error::invalid("geojson", place, format!("expected a template of {names:?}, found {name:?}"))
+        Some(name) => templates.iter().position(|t| *t == name).ok_or_else(|| {
+            Error::invalid("geojson", place, format!("expected a template of {templates:?}, found {name:?}"))
         })?,
     };
     read_geometry(&feature["geometry"], place, template, found)
@@ -52,10 +50,10 @@ fn read_feature(feature: &Value, place: &str, templates: &[Template], found: &mu
 fn read_geometry(geometry: &Value, place: &str, template: usize, found: &mut Vec<Ground>) -> Result<()> {
     let coordinates = &geometry["coordinates"];
     match geometry["type"].as_str() {
-        Some("Polygon") => found.push(Ground { template, rings: rings(coordinates, place)? }),
+        Some("Polygon") => found.push(Ground { template: Some(template), rings: rings(coordinates, place)? }),
         Some("MultiPolygon") => {
             for polygon in list(coordinates, place)? {
-                found.push(Ground { template, rings: rings(polygon, place)? });
+                found.push(Ground { template: Some(template), rings: rings(polygon, place)? });
             }
         }
         Some("GeometryCollection") => {

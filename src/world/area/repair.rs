@@ -3,8 +3,8 @@
 use geo::algorithm::bool_ops::unary_union;
 use geo::{Area as _, BooleanOps, BoundingRect, Coord, LineString, MultiPolygon, Polygon, Simplify};
 
-use super::Ground;
-use crate::stage::world::UNITS_PER_METRE;
+use super::grid::{all_snapped, snap};
+use super::{Ground, MOST_CORNERS};
 use crate::{Error, Result};
 
 /// Outlines are followed to within this, metres.
@@ -13,16 +13,15 @@ const DETAIL: f64 = 0.05;
 const SMALLEST: f64 = 6.0;
 /// Holes smaller than this are no obstacle, square metres.
 const SMALLEST_HOLE: f64 = 0.02;
-/// Largest world, metres, and corners of its outlines.
+/// Largest world, metres.
 const WIDEST: f64 = 20_000.0;
-const MOST_CORNERS: usize = 20_000;
 
-/// Clean ground: polygons that touch neither themselves nor each other, of every template.
+/// Clean ground: polygons that touch neither themselves nor each other, and whose it is.
 pub(super) struct Walkable {
     /// All of it.
     pub all: MultiPolygon<f64>,
-    /// Of every template.
-    pub by_template: Vec<(usize, MultiPolygon<f64>)>,
+    /// Templates and their ground, from above: where several lie on each other the first counts.
+    pub layers: Vec<(usize, MultiPolygon<f64>)>,
 }
 
 /// Repairs polygons; `notes` says what was done.
@@ -32,16 +31,21 @@ pub(super) fn repair(grounds: &[Ground], side: f64, notes: &mut Vec<String>) -> 
         let problem = format!("expected at most {MOST_CORNERS} corners, found {corners}");
         return Err(Error::invalid("area", "polygons", problem));
     }
-    let mut by_template: Vec<(usize, MultiPolygon<f64>)> = Vec::new();
+    let (mut layers, mut blocked) = (Vec::<(usize, MultiPolygon<f64>)>::new(), Vec::new());
     for (index, ground) in grounds.iter().enumerate() {
         let clean = clean(ground, index, notes);
-        match by_template.iter_mut().find(|(template, _)| *template == ground.template) {
-            Some((_, all)) => all.0.extend(clean.0),
-            None => by_template.push((ground.template, clean)),
+        match (ground.template, layers.last_mut()) {
+            (None, _) => blocked.extend(clean.0),
+            (Some(template), Some((last, layer))) if *last == template => layer.0.extend(clean.0),
+            (Some(template), _) => layers.push((template, clean)),
         }
     }
-    let everything: Vec<Polygon<f64>> = by_template.iter().flat_map(|(_, ground)| ground.0.iter().cloned()).collect();
-    let all = without_small(&simplified(&unary_union(&everything)), notes);
+    let everything: Vec<Polygon<f64>> = layers.iter().flat_map(|(_, ground)| ground.0.iter().cloned()).collect();
+    let mut free = unary_union(&everything);
+    if !blocked.is_empty() {
+        free = free.difference(&unary_union(&blocked));
+    }
+    let all = without_small(&simplified(&free), notes);
     let Some(bounds) = all.bounding_rect() else {
         let problem = format!("expected ground to walk on, found none after repairs: {}", notes.join("; "));
         return Err(Error::invalid("area", "polygons", problem));
@@ -51,7 +55,7 @@ pub(super) fn repair(grounds: &[Ground], side: f64, notes: &mut Vec<String>) -> 
         let problem = format!("expected a world of at most {WIDEST} m and 100000 cells, found {w:.0} x {h:.0} m");
         return Err(Error::invalid("area", "polygons", problem));
     }
-    Ok(Walkable { all, by_template })
+    Ok(Walkable { all, layers })
 }
 
 /// One polygon by even and odd: what is surrounded twice is a hole, as in drawings.
@@ -76,9 +80,9 @@ fn clean(ground: &Ground, index: usize, notes: &mut Vec<String>) -> MultiPolygon
     clean
 }
 
-/// A ring without doubled corners.
+/// A ring on whole units without doubled corners.
 fn line(ring: &[[f64; 2]]) -> LineString<f64> {
-    let mut points: Vec<Coord<f64>> = ring.iter().map(|&[x, y]| Coord { x, y }).collect();
+    let mut points: Vec<Coord<f64>> = ring.iter().map(|&[x, y]| Coord { x: snap(x), y: snap(y) }).collect();
     points.dedup();
     if points.len() > 1 && points.first() == points.last() {
         points.pop();
@@ -94,15 +98,7 @@ fn outline_of(polygon: &Polygon<f64>) -> Vec<glam::Vec2> {
 
 /// Fewer corners, on whole units; made clean again, as both may make lines cross.
 fn simplified(all: &MultiPolygon<f64>) -> MultiPolygon<f64> {
-    let snap = |v: f64| (v * UNITS_PER_METRE).round() / UNITS_PER_METRE;
-    let ring = |ring: &LineString<f64>| {
-        let mut points: Vec<Coord<f64>> = ring.simplify(DETAIL).0;
-        points.iter_mut().for_each(|p| *p = Coord { x: snap(p.x), y: snap(p.y) });
-        points.dedup();
-        LineString::new(points)
-    };
-    let polygons = all.0.iter().map(|p| Polygon::new(ring(p.exterior()), p.interiors().iter().map(ring).collect()));
-    MultiPolygon::new(polygons.collect()).union(&MultiPolygon::new(Vec::new()))
+    all_snapped(&all.simplify(DETAIL)).union(&MultiPolygon::new(Vec::new()))
 }
 
 fn without_small(all: &MultiPolygon<f64>, notes: &mut Vec<String>) -> MultiPolygon<f64> {

@@ -11,14 +11,17 @@ use super::patterns::{Border, borders, calm};
 use super::{Area, Built, repair};
 use crate::stage::World;
 use crate::stage::world::{Identities, Link, TemplateInfo, UNITS_PER_METRE, WalkLimits, WorldInfo, mix};
-use crate::world::{CrowdPatch, FramePatch, Limits, Options, Pattern, Placement, bake, solve};
+use crate::world::goal::{Net, goal_problem};
+use crate::world::goal_solve::{Connections, solve_with};
+use crate::world::{CrowdPatch, FramePatch, Limits, Options, Pattern, Placement, Rounds, Spot, bake};
 use crate::{Error, Result};
 
 /// Rounds of calming borders; in the last all people of those left give up.
 const ROUNDS: u32 = 6;
 
 /// The cells of an area on their way to patches, round by round: borders of cells that find no way get calmer, and the cells on
-/// both their sides are solved again. All of it follows from the area and from which cells failed in which round.
+/// both their sides are solved again. When all have ways, those that people with a goal pass are solved once more. All of it
+/// follows from the area and from which cells failed in which round.
 #[derive(Clone, Debug)]
 pub(in crate::world) struct Works {
     cells: Vec<Cell>,
@@ -27,17 +30,25 @@ pub(in crate::world) struct Works {
     calmed: BTreeSet<(usize, usize)>,
     notes: Vec<String>,
     round: u32,
+    /// The round in which every cell was solved the last time.
+    solved_in: Vec<u32>,
+    /// Rounds of people with a goal, once they are known.
+    rounds: Option<Rounds>,
 }
 
 impl Works {
     /// Repairs and cuts the ground.
     pub fn new(area: &Area) -> Result<Self> {
-        let mut notes = Vec::new();
+        let mut notes = area.notes.clone();
         let walkable = repair::repair(&area.grounds, area.side.into(), &mut notes)?;
         let cells = cells::cut(&walkable, area.side.into(), &mut notes)?;
+        if let Some((goal, problem)) = goal_problem(&area.goals, "the ground", |spot| cells_of(area, &cells, spot)) {
+            return Err(Error::invalid("area", format!("goal {}", goal + 1), problem));
+        }
         let borders = borders(area, &cells);
         let frames = frames(area, &cells, &borders);
-        Ok(Self { cells, borders, frames, calmed: BTreeSet::new(), notes, round: 0 })
+        let solved_in = vec![0; cells.len()];
+        Ok(Self { cells, borders, frames, calmed: BTreeSet::new(), notes, round: 0, solved_in, rounds: None })
     }
 
     /// Every cell with its present patterns, without objects.
@@ -45,14 +56,20 @@ impl Works {
         &self.frames
     }
 
-    /// The patch of a cell; none if no way is found.
+    /// The patch of a cell; none if no way is found. A cell without a way for people with a goal stays as it was.
     pub fn solve(&self, area: &Area, cell: usize) -> Option<CrowdPatch> {
-        patch(area, self.cells[cell].template, cell, self.frames[cell].clone(), self.round)
+        let given = self.rounds.as_ref().map_or(&[][..], |rounds| rounds.of_cell(cell));
+        let seed = mix(mix(area.seed, cell as u64), u64::from(self.solved_in[cell]));
+        let patch = |connections| patch(area, self.cells[cell].template, &self.frames[cell], connections, seed);
+        Some(given).filter(|given| !given.is_empty()).and_then(patch).or_else(|| patch(&[]))
     }
 
     /// Ends a round in which some cells failed. Returns the cells of the next.
     pub fn next(&mut self, area: &Area, failed: &[usize]) -> Result<Vec<usize>> {
-        if self.round == ROUNDS && !failed.is_empty() {
+        if failed.is_empty() {
+            return Ok(self.send_on_rounds(area));
+        }
+        if self.round == ROUNDS {
             return Err(Error::invalid("area", "cells", "expected a way through every cell"));
         }
         let mut again: BTreeSet<usize> = failed.iter().copied().collect();
@@ -65,7 +82,21 @@ impl Works {
         }
         self.frames = frames(area, &self.cells, &self.borders);
         self.round += 1;
+        again.iter().for_each(|&cell| self.solved_in[cell] = self.round);
         Ok(again.into_iter().collect())
+    }
+
+    /// Chooses the rounds of people with a goal, when all patterns are settled. Returns the cells that they pass.
+    fn send_on_rounds(&mut self, area: &Area) -> Vec<usize> {
+        if area.goals.is_empty() || self.rounds.is_some() {
+            return Vec::new();
+        }
+        let beyond = self.cells.iter().map(|cell| cell.beyond.clone()).collect();
+        let net = Net::new(self.frames.clone(), beyond, vec![true; self.cells.len()]);
+        let rounds = Rounds::find(&area.goals, area.seed, |spot| cells_of(area, &self.cells, spot), net);
+        let passed = rounds.connections.keys().copied().collect();
+        self.rounds = Some(rounds);
+        passed
     }
 
     /// The world of all patches.
@@ -77,6 +108,9 @@ impl Works {
         let quiet = self.borders.iter().filter(|b| b.pattern.is_empty()).count();
         if quiet > 0 {
             self.notes.push(format!("nobody crosses {quiet} of {borders} borders: too short, or corners too sharp"));
+        }
+        if let Some(rounds) = &self.rounds {
+            self.notes.extend(rounds.notes(&area.goals, |cell| &patches[cell]));
         }
         Ok(Built { world: baked(area, name, &self.cells, patches)?, notes: self.notes })
     }
@@ -104,25 +138,31 @@ fn frames(area: &Area, cells: &[Cell], borders: &[Border]) -> Vec<FramePatch> {
     frames
 }
 
-/// A cell filled with walkers: with objects if that can be, else without.
-fn patch(area: &Area, template: usize, index: usize, bare: FramePatch, round: u32) -> Option<CrowdPatch> {
+/// Cells of a place.
+fn cells_of(area: &Area, cells: &[Cell], spot: &Spot) -> Vec<usize> {
+    let fits = |cell: &Cell| match spot {
+        Spot::Template(name) => area.templates[cell.template].name == *name,
+        Spot::At(place) => cell.contains(place.as_dvec2()),
+    };
+    (0..cells.len()).filter(|&index| fits(&cells[index])).collect()
+}
+
+/// A cell filled with walkers, some of whose ways are given: with objects if that can be, else without.
+fn patch(area: &Area, template: usize, bare: &FramePatch, connections: &Connections, seed: u64) -> Option<CrowdPatch> {
     let limits = Limits::default();
     if bare.patterns.iter().all(Pattern::is_empty) && !bare.problems(&limits).is_empty() {
         // A sliver that nobody crosses needs no way.
-        return Some(CrowdPatch { frame: bare, walkers: Vec::new() });
+        return Some(CrowdPatch { frame: bare.clone(), walkers: Vec::new() });
     }
-    let seed = mix(mix(area.seed, index as u64), u64::from(round));
-    for attempt in 0..3 {
+    let solved = |attempt: u64| {
         let mut frame = bare.clone();
         if attempt < 2 {
             area.templates[template].furnish(&mut frame, &limits, &mut ChaCha8Rng::seed_from_u64(mix(seed, attempt)));
         }
         let options = Options { seed: mix(seed, !attempt), restarts: 8, ..Options::default() };
-        if let Some(solution) = solve(&frame, &limits, &options).ok().filter(super::super::Solution::ok) {
-            return Some(solution.patch);
-        }
-    }
-    None
+        solve_with(&frame, connections, &limits, &options).ok().flatten()
+    };
+    (0..3).find_map(solved)
 }
 
 /// Who goes where: the same crossing of the mirrored pattern.
