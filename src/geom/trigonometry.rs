@@ -14,7 +14,7 @@ pub(crate) fn sin_cos(angle: f32) -> (f32, f32) {
     let quarters = (angle * FRAC_2_PI + ROUNDING) - ROUNDING;
     let r = (angle - quarters * QUARTER[0]) - quarters * QUARTER[1];
     let r2 = r * r;
-    let sin = r + r * r2 * (-0.166_666_55 + r2 * (0.008_332_161 - r2 * 0.000_195_152_96));
+    let sin = r + r * r2 * (-0.166_666_54 + r2 * (0.008_332_161 - r2 * 0.000_195_152_95));
     let cos = 1.0 - 0.5 * r2 + r2 * r2 * (0.041_666_646 + r2 * (-0.001_388_731_6 + r2 * 0.000_024_433_157));
     let quarter = quarters as i32;
     let (sin, cos) = if quarter & 1 == 0 { (sin, cos) } else { (cos, sin) };
