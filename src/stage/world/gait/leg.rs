@@ -53,8 +53,9 @@ struct Leg {
     up: usize,
     bones: Bones,
     hip: Vec3A,
-    knee: Vec3A,
-    ankle: Vec3A,
+    /// From the hip to the knee, and from there to the ankle.
+    thigh: Vec3A,
+    shin: Vec3A,
     /// Rotations of thigh, shin, foot and toes.
     turns: [Quat; 4],
     /// Where the ball is to be, and how the foot is to be turned there.
@@ -70,17 +71,11 @@ struct Leg {
 pub(super) fn lead(pose: &mut [Quat; JOINT_COUNT], root: Vec3, facing: Vec2, feet: &[Foot; 2]) -> f32 {
     let joints = &canonical().joints;
     let [left, right] = [joint::LEFT_UP_LEG, joint::RIGHT_UP_LEG];
-    let mut legs = [
-        Leg::new(pose, Bones::of(joints, left), root.into(), facing, left, &feet[0]),
-        Leg::new(pose, Bones::of(joints, right), root.into(), facing, right, &feet[1]),
-    ];
-    let lowering = eased(legs[0].lowering().max(legs[1].lowering())).min(LOWERING);
-    for leg in &mut legs {
-        leg.hip.y -= lowering;
-        leg.knee.y -= lowering;
-        leg.ankle.y -= lowering;
-        leg.bend(pose);
-    }
+    let first = Leg::new(pose, Bones::of(joints, left), root.into(), facing, left, &feet[0]);
+    let second = Leg::new(pose, Bones::of(joints, right), root.into(), facing, right, &feet[1]);
+    let lowering = eased(first.lowering().max(second.lowering())).min(LOWERING);
+    first.bend(pose, lowering);
+    second.bend(pose, lowering);
     lowering
 }
 
@@ -98,55 +93,47 @@ impl Leg {
         let shin = thigh * pose[up + 1];
         let own = shin * pose[up + 2];
         let hip = root + pose[0] * bones.hip;
-        let knee = hip - thigh * Vec3A::Y * bones.thigh;
-        let ankle = knee - shin * Vec3A::Y * bones.shin;
         let turned = aside(facing, foot.ahead, own);
-        let (to_ball, mut ball) = (turned * bones.foot, Vec3A::from(foot.ball));
+        let (to_ball, ball) = (turned * bones.foot, Vec3A::from(foot.ball));
         // A heel that strikes the floor before the ball does not go through it.
-        ball.y += (HEEL - (ball.y - to_ball.y)).max(0.0);
-        let (turns, target) = ([thigh, shin, turned, turned * pose[up + 3]], ball - to_ball);
-        Self { up, bones, hip, knee, ankle, turns, ball, foot: turned, target }
+        let ball = ball + Vec3A::Y * (HEEL - (ball.y - to_ball.y)).max(0.0);
+        let (down, turns) = (Vec3A::NEG_Y, [thigh, shin, turned, turned * pose[up + 3]]);
+        let (thigh, shin) = (thigh * down * bones.thigh, shin * down * bones.shin);
+        Self { up, bones, hip, thigh, shin, turns, ball, foot: turned, target: ball - to_ball }
     }
 
     /// How far the hips should come down for the foot to be in reach; negative where it is nearer than that.
     #[inline(always)]
     fn lowering(&self) -> f32 {
-        let reach = self.bones.reach();
-        let across = (self.target - self.hip).with_y(0.0).length_squared();
-        self.hip.y - self.target.y - (reach * reach - across).max(0.0).sqrt()
+        let (reach, way) = (self.bones.reach(), self.target - self.hip);
+        let across = way.length_squared() - way.y * way.y;
+        -way.y - (reach * reach - across).max(0.0).sqrt()
     }
 
-    /// Turns the foot about its ball until the ankle is in reach, as far as it goes.
+    /// The foot, turned about its ball until the ankle is in reach, as far as it goes.
     #[inline(always)]
-    fn lift_heel(&mut self) {
+    fn lifted(&self) -> Quat {
         let reach = self.bones.reach();
-        if self.target.distance_squared(self.hip) > reach * reach {
-            self.lift_heel_by(reach);
+        if self.target.distance_squared(self.hip) <= reach * reach {
+            return self.foot;
         }
-    }
-
-    #[cold]
-    fn lift_heel_by(&mut self, reach: f32) {
-        let (bone, to_hip) = (self.target - self.ball, self.hip - self.ball);
-        let (foot, whole) = (bone.length(), to_hip.length());
-        let cosine = (foot * foot + whole * whole - reach * reach) / (2.0 * foot * whole);
-        let angle = (bone.angle_between(to_hip) - cosine.clamp(-1.0, 1.0).acos()).clamp(0.0, LIFT);
-        let axis = bone.cross(to_hip).normalize_or_zero();
-        self.foot = Quat::from_axis_angle(if axis == Vec3A::ZERO { Vec3::X } else { axis.into() }, angle) * self.foot;
-        self.target = self.ball - self.foot * self.bones.foot;
+        lift(self.foot, self.target - self.ball, self.hip - self.ball, reach)
     }
 
     #[inline(always)]
-    fn bend(&mut self, pose: &mut [Quat; JOINT_COUNT]) {
-        let flat = self.foot;
-        self.lift_heel();
+    fn bend(mut self, pose: &mut [Quat; JOINT_COUNT], lowering: f32) {
+        self.hip -= Vec3A::Y * lowering;
+        let foot = self.lifted();
+        if foot != self.foot {
+            self.target = self.ball - foot * self.bones.foot;
+        }
         let [thigh, shin] = self.reached();
         let (up, toes) = (self.up, self.toes());
         pose[up] = pose[0].conjugate() * thigh;
         pose[up + 1] = thigh.conjugate() * shin;
-        pose[up + 2] = shin.conjugate() * self.foot;
-        if toes != self.turns[3] || self.foot != flat {
-            pose[up + 3] = (self.foot.conjugate() * toes).normalize();
+        pose[up + 2] = shin.conjugate() * foot;
+        if toes != self.turns[3] || foot != self.foot {
+            pose[up + 3] = (foot.conjugate() * toes).normalize();
         }
     }
 
@@ -154,7 +141,7 @@ impl Leg {
     /// swings. A few square roots and nothing else: this runs for everybody in every frame.
     #[inline(always)]
     fn reached(&self) -> [Quat; 2] {
-        let (thigh, shin, way) = (self.knee - self.hip, self.ankle - self.knee, self.target - self.hip);
+        let (thigh, shin, way) = (self.thigh, self.shin, self.target - self.hip);
         let (a, b) = (self.bones.thigh, self.bones.shin);
         let (a2, b2, now) = (a * a, b * b, (thigh + shin).length_squared());
         let (most, far) = ((a + b) * 0.9999, way.length());
@@ -189,6 +176,17 @@ impl Leg {
         let axis = tip.cross(Vec3A::Y).try_normalize().unwrap_or(turn * Vec3A::NEG_X);
         Quat::from_axis_angle(axis.into(), slope(lowest) - slope(tip.y)) * turn
     }
+}
+
+/// A foot turned about its ball, from where its `ankle` is and the `hip`, until they are `reach` apart. Not inlined: else all of a leg
+/// would lie in memory for it.
+#[inline(never)]
+fn lift(foot: Quat, ankle: Vec3A, hip: Vec3A, reach: f32) -> Quat {
+    let (own, whole) = (ankle.length(), hip.length());
+    let cosine = (own * own + whole * whole - reach * reach) / (2.0 * own * whole);
+    let angle = (ankle.angle_between(hip) - cosine.clamp(-1.0, 1.0).acos()).clamp(0.0, LIFT);
+    let axis = ankle.cross(hip).try_normalize().map_or(Vec3::X, Vec3::from);
+    Quat::from_axis_angle(axis, angle) * foot
 }
 
 /// A leg's triangle: twice its area, and products of the sides at the hip and at the ankle with the cosine between them.
