@@ -3,7 +3,7 @@
 use std::f32::consts::FRAC_2_PI;
 
 /// A quarter turn in two parts, the first of which has few digits, so that its multiples are exact.
-const QUARTER: [f32; 2] = [1.570_312_5, 4.838_267_9e-4];
+const QUARTER: [f32; 2] = [1.570_312_5, 4.838_268e-4];
 /// Added and taken away again, it rounds to whole numbers.
 const ROUNDING: f32 = 12_582_912.0;
 

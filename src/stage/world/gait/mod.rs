@@ -127,7 +127,7 @@ impl GaitTable {
         }
         // All roots at once.
         squares.iter_mut().for_each(|square| *square = 1.0 / square.sqrt());
-        pose.iter_mut().zip(squares).for_each(|(out, scale)| *out = *out * scale);
+        pose.iter_mut().zip(squares).for_each(|(out, scale)| *out *= scale);
         let hips = |i: usize| self.hips[of[i]] * weights[i];
         hips(0) + hips(1) + hips(2) + hips(3)
     }
