@@ -87,7 +87,7 @@ fn checkpoint() -> std::io::Result<Vec<u8>> {
     let path = std::env::temp_dir().join(format!("crowdquilt-seed-{}.tiling", std::process::id()));
     let scene = Scene { interaction: 0.0, ..Scene::new(Polygon::rectangle(Vec2::ZERO, Vec2::splat(6.0)), 3.0, 2) };
     let keep = Keep { path: &path, every_secs: 60.0, patches: Some("small") };
-    let session = Session { from: None, keep: Some(keep) };
+    let session = Session { keep: Some(keep), ..Session::default() };
     tile_in(session, &scene, &fixture::patch_set(), &Options::default(), &mut |_| true)
         .map_err(std::io::Error::other)?;
     let bytes = std::fs::read(&path)?;
