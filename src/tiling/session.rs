@@ -19,8 +19,8 @@ pub struct Session<'a> {
     pub from: Option<&'a Checkpoint>,
     /// Where checkpoints are written; none are if there is none.
     pub keep: Option<Keep<'a>>,
-    /// How many changes are tried in turn at most, whatever time they take: for what must not depend on the machine. The paper's
-    /// algorithms have no such bound.
+    /// How many rounds of changes (each is some that are worked out side by side) are tried at most, whatever time they take: for what
+    /// must not depend on the machine. The paper's algorithms have no such bound.
     pub steps: Option<u64>,
 }
 

@@ -24,7 +24,7 @@ const FIRST_SEEDS: usize = 2;
 /// where even the first does not.
 const TOGETHER: [f32; 3] = [0.4, 0.55, 0.75];
 const LESS: f32 = 0.2;
-/// Changes that are tried for one at most: what comes out must not depend on how fast a machine is.
+/// Rounds of changes that are tried for one at most: what comes out must not depend on how fast a machine is.
 const STEPS: u64 = 40;
 /// So many seconds are never reached.
 const FOR_EVER: f64 = 1e8;

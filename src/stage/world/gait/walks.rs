@@ -12,7 +12,7 @@ use crate::geom::sin_cos;
 
 /// No stay before or after.
 const NONE: u32 = u32::MAX;
-/// Slots and borders that a search for a step crosses at most; a step is a few.
+/// Borders that a search for a step crosses at most; a step crosses one or two.
 const FAR: usize = 64;
 
 /// Where the numbers of a walker of a kind are.
