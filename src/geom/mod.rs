@@ -8,6 +8,7 @@ mod gate;
 mod ground;
 mod obstacle;
 mod polygon;
+mod rotation;
 mod torus;
 mod trigonometry;
 
@@ -18,5 +19,6 @@ pub use gate::Gate;
 pub use ground::{Ground, Turn, wrap_angle};
 pub use obstacle::{Obstacle, Waypoint};
 pub use polygon::Polygon;
+pub(crate) use rotation::Rotation;
 pub use torus::{Cycle, Periodic, Torus};
 pub(crate) use trigonometry::sin_cos;

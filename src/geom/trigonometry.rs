@@ -16,9 +16,12 @@ pub(crate) fn sin_cos(angle: f32) -> (f32, f32) {
     let r2 = r * r;
     let sin = r + r * r2 * (-0.166_666_54 + r2 * (0.008_332_161 - r2 * 0.000_195_152_95));
     let cos = 1.0 - 0.5 * r2 + r2 * r2 * (0.041_666_646 + r2 * (-0.001_388_731_6 + r2 * 0.000_024_433_157));
-    let quarter = quarters as i32;
-    let (sin, cos) = if quarter & 1 == 0 { (sin, cos) } else { (cos, sin) };
-    (if quarter & 2 == 0 { sin } else { -sin }, if (quarter + 1) & 2 == 0 { cos } else { -cos })
+    // Bits, not branches: quarters of a turn come in no order.
+    let quarter = quarters as i32 as u32;
+    let other = (sin.to_bits() ^ cos.to_bits()) & (quarter & 1).wrapping_neg();
+    let (sin, cos) = (sin.to_bits() ^ other, cos.to_bits() ^ other);
+    let sign = |quarter: u32| (quarter & 2) << 30;
+    (f32::from_bits(sin ^ sign(quarter)), f32::from_bits(cos ^ sign(quarter.wrapping_add(1))))
 }
 
 #[cfg(test)]

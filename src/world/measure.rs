@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use glam::{DVec2, Quat};
+use glam::{DVec2, Quat, Vec3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -15,6 +15,9 @@ use crate::motion::JOINT_COUNT;
 use crate::patch::PatchSet;
 use crate::stage::World;
 use crate::stage::world::{Roots, Spot, TemplateInfo, WalkLimits, WorldInfo};
+
+/// Bodies posed together.
+const BLOCK: usize = 64;
 
 /// Figures of patches of one size.
 #[derive(Clone, Debug)]
@@ -200,16 +203,18 @@ fn dense_world(people: usize, kinds: u64, unique: bool) -> Result<World> {
 pub fn measure_poses(set: &PatchSet) -> Result<(usize, f64)> {
     let world = with_gait(&dense_world(10_000, 64, false)?, gait_table(set)?)?;
     let Some(gait) = &world.tables().gait else { return Ok((0, f64::NAN)) };
-    let mut poses = [[Quat::IDENTITY; JOINT_COUNT]; 64];
+    let (mut bodies, mut poses) = (Vec::new(), [[Quat::IDENTITY; JOINT_COUNT]; BLOCK]);
+    let mut hips = [Vec3::ZERO; BLOCK];
     let mut frame = |time: f64| {
-        let (mut bodies, begin) = (0, Instant::now());
-        for instance in 0..world.instances() as u32 {
-            for body in world.bodies(Spot { instance, shift: DVec2::ZERO }, time) {
-                std::hint::black_box(body.pose(&gait.table, &mut poses[bodies % 64]));
-                bodies += 1;
-            }
+        let begin = Instant::now();
+        let spots = world.order().map(|instance| Spot { instance: instance as u32, shift: DVec2::ZERO });
+        bodies.clear();
+        world.bodies_of(spots, time, &mut bodies);
+        for block in bodies.chunks(BLOCK) {
+            gait.table.poses(block, &mut poses, &mut hips);
+            std::hint::black_box((&poses, &hips));
         }
-        (bodies, begin.elapsed().as_secs_f64() * 1e9 / bodies.max(1) as f64)
+        (bodies.len(), begin.elapsed().as_secs_f64() * 1e9 / bodies.len().max(1) as f64)
     };
     let mut nanos: Vec<(usize, f64)> = (0..40).map(|i| frame(f64::from(i) * 0.31)).collect();
     nanos.sort_by(|a, b| a.1.total_cmp(&b.1));

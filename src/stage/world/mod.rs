@@ -87,7 +87,7 @@ impl World {
         };
         let first_crossing = ends(&|kind| tables.kind(kind).walkers());
         let first_stayer = ends(&|kind| tables.kind(kind).stayers().len());
-        let ways = gait::Ways::new(&tables, &rows, &first_crossing)?;
+        let ways = gait::Ways::new(&tables, &first_crossing)?;
         Ok(Self { rows, nearby, first_crossing, first_stayer, ways, tables })
     }
 

@@ -6,7 +6,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::walks::{Instant, Stay};
+use super::walks::Stay;
 use super::{Gait, GaitTable, Walking, World};
 
 /// How a foot goes from one footprint to the next.
@@ -37,21 +37,14 @@ impl GaitTable {
         let at = since * self.phases as f32;
         let first = (at as usize).min(self.phases - 1);
         let late = at - first as f32;
-        let of = |cycle: usize| {
-            let row = &self.swings[cycle * self.phases..(cycle + 1) * self.phases];
-            let next = row.get(first + 1).map_or(Swing { share: 1.0, ..row[0][foot] }, |pair| pair[foot]);
-            row[first][foot].towards(next, late)
-        };
-        of(low).towards(of(low + 1), fast)
-    }
-
-    /// Where a foot stands in the middle of its stance.
-    #[inline(always)]
-    fn print(&self, foot: usize, at: &Instant) -> Vec2 {
-        let (low, fast) = self.between(at.speed);
-        let own = self.prints[low][foot].lerp(self.prints[low + 1][foot], fast);
-        let left = Vec2::new(at.ahead.y, -at.ahead.x);
-        at.place + left * own.x + at.ahead * own.y
+        let (slower, faster) = (&self.swings[low * self.phases..], &self.swings[(low + 1) * self.phases..]);
+        // Before its own stance comes round again it is wholly on its way.
+        let last = first + 1 == self.phases;
+        let (next, whole) = if last { (0, 1.0) } else { (first + 1, 0.0) };
+        let (slow, quick) = (slower[next][foot], faster[next][foot]);
+        let slow = Swing { share: slow.share.max(whole), ..slow };
+        let quick = Swing { share: quick.share.max(whole), ..quick };
+        slower[first][foot].towards(slow, late).towards(faster[first][foot].towards(quick, late), fast)
     }
 }
 
@@ -68,7 +61,7 @@ impl Swing {
 impl World {
     /// Where the feet of a `body` are, who is in slot `at` of its `stay`; `None` if the table knows no footprints.
     #[inline(always)]
-    pub(super) fn feet(&self, gait: &Gait, stay: &Stay, at: (i32, f32), body: &Walking) -> Option<[Foot; 2]> {
+    pub(super) fn feet<'a>(&'a self, gait: &Gait, stay: &Stay<'a>, at: (i32, f32), body: &Walking) -> Option<[Foot; 2]> {
         if gait.table.prints.is_empty() {
             return None;
         }
@@ -77,10 +70,10 @@ impl World {
     }
 
     #[inline(always)]
-    fn foot(
-        &self,
+    fn foot<'a>(
+        &'a self,
         gait: &Gait,
-        stay: &Stay,
+        stay: &Stay<'a>,
         at: (i32, f32),
         body: &Walking,
         (low, fast): (usize, f32),
@@ -96,17 +89,18 @@ impl World {
             return Foot { ball: Vec3::new(place.x, height, place.y), ahead: near.1 };
         }
         let next = self.footprint(gait, stay, at, 1.0 - since, foot);
-        let small = (near.0.distance(next.0) + 0.1 * near.1.distance(next.1)) * SMALL_STEP.0;
-        let slow = if low == 0 { 1.0 - fast } else { 0.0 };
-        let lift = small.min(SMALL_STEP.1) * slow * 4.0 * share * (1.0 - share);
+        let mut lift = 0.0;
+        if low == 0 {
+            let small = (near.0.distance(next.0) + 0.1 * near.1.distance(next.1)) * SMALL_STEP.0;
+            lift = small.min(SMALL_STEP.1) * (1.0 - fast) * 4.0 * share * (1.0 - share);
+        }
         let place = near.0.lerp(next.0, share) - body.place;
         Foot { ball: Vec3::new(place.x, height + lift, place.y), ahead: near.1.lerp(next.1, share) }
     }
 
     /// Where a foot stands `cycles` of two steps later, and where it looks.
     #[inline(always)]
-    fn footprint(&self, gait: &Gait, stay: &Stay, at: (i32, f32), cycles: f32, foot: usize) -> (Vec2, Vec2) {
-        let then = self.later(gait, stay, at, cycles);
-        (gait.table.print(foot, &then), then.ahead)
+    fn footprint<'a>(&'a self, gait: &Gait, stay: &Stay<'a>, at: (i32, f32), cycles: f32, foot: usize) -> (Vec2, Vec2) {
+        self.later(gait, stay, at, cycles).print(&gait.table, foot)
     }
 }

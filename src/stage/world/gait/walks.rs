@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec2, Vec2};
+use glam::{DVec2, Vec2, Vec4, Vec4Swizzles};
 
 use super::super::moment::weights;
 use super::super::{Lane, Tables, UNITS_PER_METRE, World, rows};
-use super::{Gait, PER_RADIAN, STEPS_PER_CYCLE};
+use super::{Gait, GaitTable, PER_RADIAN, STEPS_PER_CYCLE};
 use crate::Result;
 use crate::geom::sin_cos;
 
@@ -14,18 +14,34 @@ use crate::geom::sin_cos;
 const NONE: u32 = u32::MAX;
 /// Borders that a search for a step crosses at most; a step crosses one or two.
 const FAR: usize = 64;
+/// Knots that a slot needs.
+const ORDER: usize = 4;
 
-/// Where the numbers of a walker of a kind are.
+/// What headings are stored in.
+const RADIANS: f32 = 1.0 / PER_RADIAN;
+
+/// A knot of somebody's stay: x and z of the way's control point; steps and heading when the slot of the same number begins.
+/// All that is asked about somebody lies side by side.
+type Knot = [i16; 4];
+const STEPS: usize = 2;
+const HEADING: usize = 3;
+
+/// Where the knots of a walker of a kind are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Track {
-    /// Its first number in the gait's tables.
+    /// The first of them.
     first: u32,
-    /// Its first number in `Ways::lanes`.
-    lanes: u32,
     /// The slot it comes in.
     enter: u16,
     /// Slots of its stay.
     slots: u16,
+}
+
+impl Track {
+    /// All its knots: three more than it stays slots.
+    fn knots(&self) -> std::ops::Range<usize> {
+        self.first as usize..self.first as usize + usize::from(self.slots) + ORDER - 1
+    }
 }
 
 /// How people with bodies go from stay to stay. Empty without bodies.
@@ -34,83 +50,106 @@ pub(in crate::stage::world) struct Ways {
     /// Number of walkers before every kind.
     first_walker: Vec<u32>,
     tracks: Vec<Track>,
-    /// Which of its kind's lanes a walker is, in every page of its stay.
-    lanes: Vec<u16>,
+    knots: Vec<Knot>,
     /// Crossings before and after every crossing; none if feet do not need them.
     links: Vec<[u32; 2]>,
+    /// Slots per second.
+    rate: f32,
 }
 
 /// A stay of somebody, seen from a patch: its numbers, and where its patch is.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::stage::world) struct Stay {
-    kind: u32,
+pub(in crate::stage::world) struct Stay<'a> {
     crossing: u32,
-    first: u32,
-    lanes: u32,
+    knots: &'a [Knot],
     slots: i32,
     /// The slot it comes in.
     pub enter: i32,
     /// Origin of its patch, relative to that of the patch it is seen from.
     origin: Vec2,
+    /// How its patch is turned: sine and cosine times the metres of a unit, and the angle.
+    turns: [f32; 2],
     turn: f32,
     /// Phase that it begins with.
     phase: f32,
     /// Factor of its steps.
     pace: f32,
+    /// Slots per second.
+    rate: f32,
 }
 
-/// How somebody is at a step.
+/// How somebody is at some time of a stay.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Instant {
     pub place: Vec2,
-    pub speed: f32,
-    /// Where it looks: sine and cosine of the heading.
-    pub ahead: Vec2,
+    /// m/s.
+    pub velocity: Vec2,
+    /// Where it looks, radians.
+    pub heading: f32,
 }
 
 impl Ways {
     /// # Errors
     /// If the gait does not fit the world.
-    pub fn new(tables: &Tables, index: &rows::Index, first_crossing: &[u32]) -> Result<Self> {
+    pub fn new(tables: &Tables, first_crossing: &[u32]) -> Result<Self> {
         let Some(gait) = &tables.gait else { return Ok(Self::default()) };
-        let (mut ways, mut at) = (Self::default(), 0_u64);
+        let rate = tables.info.slots as f32 / tables.info.period_secs;
+        let mut ways = Self { rate, ..Self::default() };
+        let (mut at, mut stays) = (0, 0);
         for kind in 0..tables.kinds() {
             ways.first_walker.push(ways.tracks.len() as u32);
             for (enter, leave) in rows::stays(tables, kind) {
                 let slots = (leave - enter).clamp(0, 0xffff) as u16;
-                let (first, lanes, enter) = (at as u32, ways.lanes.len() as u32, enter as u16);
-                ways.tracks.push(Track { first, lanes, enter, slots });
-                let page = |slot: i32| page_of(index, slot, tables.info.slots).1;
-                let pages = page(i32::from(enter) + i32::from(slots)) - page(enter.into()) + 1;
-                ways.lanes.resize(ways.lanes.len() + pages, 0);
-                at += u64::from(slots) + 1;
+                let track = Track { first: at as u32, enter: enter as u16, slots };
+                (at, stays) = (track.knots().end, stays + u64::from(slots) + 1);
+                ways.tracks.push(track);
             }
         }
-        ways.number_lanes(tables, index);
-        gait.validate(at, tables.identities.parts().0.len())?;
+        gait.validate(stays, tables.identities.parts().0.len())?;
+        ways.knots = vec![Knot::default(); at];
+        ways.copy_ways(tables);
+        ways.copy_steps(gait);
         if !gait.table.prints.is_empty() {
             ways.link(tables, first_crossing);
         }
         Ok(ways)
     }
 
-    /// Notes who is which lane.
-    fn number_lanes(&mut self, tables: &Tables, index: &rows::Index) {
-        let kinds = tables.kinds();
-        let mut begin = 0;
-        for (at, &end) in tables.lane_ends.iter().enumerate() {
-            let (page, kind) = (at / kinds, at % kinds);
-            for (number, &lane) in tables.lanes[begin..end as usize].iter().enumerate() {
-                let walker = self.first_walker[kind] as usize + Lane(lane).walker();
-                let Track { lanes, enter, .. } = self.tracks[walker];
-                let end = self.tracks.get(walker + 1).map_or(self.lanes.len(), |next| next.lanes as usize);
-                let on = page + tables.pages() * Lane(lane).lap() as usize;
-                let since = on.checked_sub(page_of(index, enter.into(), tables.info.slots).1);
-                // A lane in which nobody ever is has no number.
-                let known = since.and_then(|since| self.lanes[lanes as usize..end].get_mut(since));
-                known.into_iter().for_each(|known| *known = number as u16);
+    /// Copies control points from the pages.
+    fn copy_ways(&mut self, tables: &Tables) {
+        let (kinds, slots) = (tables.kinds(), tables.info.slots as usize);
+        let (mut begin, mut page_begin) = (0, 0);
+        for page in 0..tables.pages() {
+            let (first, steps) = (begin, tables.page_slots(page));
+            let end = tables.lane_ends[(page + 1) * kinds - 1] as usize;
+            let row = 2 * (end - first);
+            for kind in 0..kinds {
+                let lanes = begin..tables.lane_ends[page * kinds + kind] as usize;
+                begin = lanes.end;
+                for lane in lanes.clone() {
+                    let of = Lane(tables.lanes[lane]);
+                    let track = self.tracks[self.first_walker[kind] as usize + of.walker()];
+                    let on = page * tables.info.page as usize + of.lap() as usize * slots;
+                    let at = page_begin + 2 * (lanes.start - first) + lane - lanes.start;
+                    let knots = &mut self.knots[track.knots()];
+                    for step in (0..steps).filter(|step| (on + step).wrapping_sub(track.enter.into()) < track.slots.into()) {
+                        for (i, knot) in knots[on + step - usize::from(track.enter)..][..ORDER].iter_mut().enumerate() {
+                            let x = at + (step + i) * row;
+                            (knot[0], knot[1]) = (tables.rows[x], tables.rows[x + lanes.len()]);
+                        }
+                    }
+                }
             }
-            begin = end as usize;
+            page_begin += row * (steps + ORDER - 1);
+        }
+    }
+
+    /// Copies steps and headings.
+    fn copy_steps(&mut self, gait: &Gait) {
+        let mut numbers = gait.steps.iter().zip(&gait.headings);
+        for track in &self.tracks {
+            let knots = self.knots[track.knots()].iter_mut().take(usize::from(track.slots) + 1);
+            knots.zip(&mut numbers).for_each(|(knot, (&steps, &heading))| (knot[STEPS], knot[HEADING]) = (steps, heading));
         }
     }
 
@@ -145,20 +184,26 @@ impl Ways {
 
     /// The stay of a walker of an instance, seen from there.
     #[inline(always)]
-    pub fn stay(&self, world: &World, instance: usize, walker: usize) -> Stay {
-        let kind = world.kind_of(instance);
-        let Track { first, lanes, enter, slots } = self.tracks[self.first_walker[kind] as usize + walker];
-        let crossing = world.first_crossing[instance] as usize + walker;
-        let of = |gait: &Gait| (gait.crossing_phases[crossing], gait.crossing_paces[crossing]);
-        let (phase, pace) = world.tables.gait.as_ref().map_or((0.0, 1.0), of);
-        let (kind, crossing) = (kind as u32, crossing as u32);
-        let (slots, enter) = (i32::from(slots), i32::from(enter));
-        Stay { kind, crossing, first, lanes, slots, enter, origin: Vec2::ZERO, turn: world.turn(instance), phase, pace }
+    pub fn stay<'a>(&'a self, world: &World, gait: &Gait, instance: usize, walker: usize) -> Stay<'a> {
+        let track = self.tracks[self.first_walker[world.kind_of(instance)] as usize + walker];
+        let crossing = world.first_crossing[instance] + walker as u32;
+        Stay {
+            crossing,
+            knots: &self.knots[track.knots()],
+            slots: track.slots.into(),
+            enter: track.enter.into(),
+            origin: Vec2::ZERO,
+            turns: world.rows.turns[instance],
+            turn: world.turn(instance),
+            phase: gait.crossing_phases[crossing as usize],
+            pace: gait.crossing_paces[crossing as usize],
+            rate: self.rate,
+        }
     }
 
     /// The stay before (`side` 0) or after (1) a stay, seen from the same patch.
     #[cold]
-    fn neighbour(&self, world: &World, stay: &Stay, side: usize) -> Option<Stay> {
+    fn neighbour<'a>(&'a self, world: &World, gait: &Gait, stay: &Stay, side: usize) -> Option<Stay<'a>> {
         let from = stay.crossing as usize;
         let to = *self.links.get(from)?.get(side)?;
         if to == NONE {
@@ -166,7 +211,7 @@ impl Ways {
         }
         let instance_of = |crossing: u32| world.first_crossing.partition_point(|&first| first <= crossing) - 1;
         let [here, there] = [instance_of(stay.crossing), instance_of(to)];
-        let next = self.stay(world, there, (to - world.first_crossing[there]) as usize);
+        let next = self.stay(world, gait, there, (to - world.first_crossing[there]) as usize);
         let when = |crossing: u32, instance: usize, stay: &Stay| {
             let own = world.tables.identities.laps(crossing as usize) * i64::from(world.info().slots);
             own + i64::from(stay.enter) - i64::from(world.tables.instance_phases[instance])
@@ -180,62 +225,68 @@ impl Ways {
     }
 
     pub fn bytes(&self) -> usize {
-        4 * self.first_walker.len() + 12 * self.tracks.len() + 2 * self.lanes.len() + 8 * self.links.len()
-    }
-}
-
-/// Slot of its period, and page counted from the period's begin, of a slot counted from there.
-#[inline(always)]
-fn page_of(index: &rows::Index, mut slot: i32, slots: u32) -> (usize, usize) {
-    let (slots, mut pages) = (slots as i32, 0);
-    // Hardly anybody stays for more than two periods.
-    while slot >= slots {
-        slot -= slots;
-        pages += index.page_of(slots as usize - 1) + 1;
-    }
-    (slot as usize, pages + index.page_of(slot as usize))
-}
-
-impl Stay {
-    /// Where it looks, radians, in slot number `slot` of the stay.
-    #[inline(always)]
-    pub fn heading(&self, gait: &Gait, slot: i32, share: f32) -> f32 {
-        let at = (self.first as i32 + slot) as usize;
-        let (from, to) = (gait.headings[at], gait.headings[at + 1]);
-        (f32::from(from) + f32::from(to.wrapping_sub(from)) * share) / PER_RADIAN - self.turn
-    }
-
-    /// Its phase, counted on from that which it came in with.
-    #[inline(always)]
-    pub fn phase(&self, gait: &Gait, slot: i32, share: f32) -> f32 {
-        let (from, to) = between(self.steps(gait), slot);
-        self.phase + (from + (to - from) * share) / STEPS_PER_CYCLE * self.pace
-    }
-
-    /// Its steps at the begin of every slot, and at its end.
-    #[inline(always)]
-    fn steps<'a>(&self, gait: &'a Gait) -> &'a [i16] {
-        &gait.steps[self.first as usize..][..=self.slots as usize]
+        4 * self.first_walker.len() + 8 * (self.tracks.len() + self.knots.len() + self.links.len())
     }
 }
 
 /// Steps at the begin and at the end of a slot.
 #[inline(always)]
-fn between(steps: &[i16], slot: i32) -> (f32, f32) {
-    (f32::from(steps[slot as usize]), f32::from(steps[slot as usize + 1]))
+fn between(knots: &[Knot], slot: i32) -> (f32, f32) {
+    let pair = &knots[slot as usize..][..2];
+    (pair[0][STEPS].into(), pair[1][STEPS].into())
 }
 
-/// The slot in which steps are `target`, sought from one on; or that it is before (-1) or after (1) all of them.
 #[inline(always)]
-fn within(steps: &[i16], mut slot: i32, target: f32) -> (i32, i32) {
-    let last = steps.len() as i32 - 2;
-    loop {
-        let (from, to) = between(steps, slot);
-        let side = i32::from(target > to) - i32::from(target < from);
-        if side == 0 || !(0..=last).contains(&(slot + side)) {
-            return (slot, side);
+fn wide([x, z, steps, heading]: Knot) -> Vec4 {
+    Vec4::new(x.into(), z.into(), steps.into(), heading.into())
+}
+
+impl Stay<'_> {
+    /// Its phase, counted on from that which it came in with.
+    #[inline(always)]
+    pub fn phase(&self, slot: i32, share: f32) -> f32 {
+        let (from, to) = between(self.knots, slot);
+        self.phase + (from + (to - from) * share) / STEPS_PER_CYCLE * self.pace
+    }
+
+    /// How somebody is in slot number `slot` of the stay, a share of it later; straight on, before and after the slot.
+    #[inline(always)]
+    pub(super) fn at(&self, slot: i32, share: f32) -> Instant {
+        let inside = share.clamp(0.0, 1.0);
+        let knots = &self.knots[slot as usize..][..ORDER];
+        let (place, velocity) = weights(inside);
+        let velocity = self.weigh(knots, &velocity);
+        let place = self.weigh(knots, &place) + velocity * (share - inside) + self.origin;
+        let (from, to) = (knots[0][HEADING], knots[1][HEADING]);
+        let heading = (f32::from(from) + f32::from(to.wrapping_sub(from)) * inside) * RADIANS - self.turn;
+        Instant { place, velocity: velocity * self.rate, heading }
+    }
+
+    /// A weighted sum of control points, as the patch is turned, metres.
+    #[inline(always)]
+    fn weigh(&self, knots: &[Knot], w: &[f32; ORDER]) -> Vec2 {
+        let sum = wide(knots[0]) * w[0] + wide(knots[1]) * w[1] + wide(knots[2]) * w[2] + wide(knots[3]) * w[3];
+        Vec2::new(self.turns[1], self.turns[0]).rotate(sum.xy())
+    }
+
+    /// How somebody is where its steps are `target` in a slot.
+    #[inline(always)]
+    fn at_steps(&self, slot: i32, target: f32) -> Instant {
+        let (from, to) = between(self.knots, slot);
+        self.at(slot, (target - from) / (to - from).max(1.0))
+    }
+
+    /// The slot in which steps are `target`, sought from one on; or that it is before (-1) or after (1) all of them.
+    #[inline(always)]
+    fn within(&self, mut slot: i32, target: f32) -> (i32, i32) {
+        loop {
+            let (from, to) = between(self.knots, slot);
+            let side = i32::from(target > to) - i32::from(target < from);
+            if side == 0 || !(0..self.slots).contains(&(slot + side)) {
+                return (slot, side);
+            }
+            slot += side;
         }
-        slot += side;
     }
 }
 
@@ -252,64 +303,47 @@ impl World {
 
     /// How whoever is in slot number `slot` of a `stay` is `cycles` of two steps later (earlier if negative).
     #[inline(always)]
-    pub(super) fn later(&self, gait: &Gait, stay: &Stay, (slot, share): (i32, f32), cycles: f32) -> Instant {
-        let steps = stay.steps(gait);
-        let (from, to) = between(steps, slot);
+    pub(super) fn later<'a>(&'a self, gait: &Gait, stay: &Stay<'a>, (slot, share): (i32, f32), cycles: f32) -> Instant {
+        let (from, to) = between(stay.knots, slot);
         let now = from + (to - from) * share;
         let target = now + cycles * STEPS_PER_CYCLE / stay.pace;
         // About where it is. Downwards, as slots are.
         let guess = slot + ((target - from) / (to - from).max(1.0) + 64.0) as i32 - 64;
-        match within(steps, guess.clamp(0, stay.slots - 1), target) {
-            (slot, 0) => self.instant(gait, stay, slot, target),
+        match stay.within(guess.clamp(0, stay.slots - 1), target) {
+            (slot, 0) => stay.at_steps(slot, target),
             (_, side) => self.beyond(gait, *stay, side, target),
         }
     }
 
     /// The same, when it is before (`side` -1) or after (1) the stay.
     #[inline(never)]
-    fn beyond(&self, gait: &Gait, mut stay: Stay, mut side: i32, mut target: f32) -> Instant {
+    fn beyond<'a>(&'a self, gait: &Gait, mut stay: Stay<'a>, mut side: i32, mut target: f32) -> Instant {
         let mut slot = if side < 0 { 0 } else { stay.slots - 1 };
         for _ in 0..FAR {
-            let Some(next) = self.ways.neighbour(self, &stay, usize::from(side > 0)) else { break };
-            let whole = if side > 0 { stay } else { next };
-            let taken = f32::from(gait.steps[(whole.first as i32 + whole.slots) as usize]);
+            let Some(next) = self.ways.neighbour(self, gait, &stay, usize::from(side > 0)) else { break };
+            let whole = if side > 0 { &stay } else { &next };
+            let taken = f32::from(whole.knots[whole.slots as usize][STEPS]);
             // What is left goes by the pace of the next stay.
             let pace = stay.pace / next.pace;
             target = if side > 0 { (target - taken) * pace } else { taken + target * pace };
             stay = next;
-            (slot, side) = within(stay.steps(gait), if side > 0 { 0 } else { stay.slots - 1 }, target);
+            (slot, side) = stay.within(if side > 0 { 0 } else { stay.slots - 1 }, target);
             if side == 0 {
                 break;
             }
         }
-        self.instant(gait, &stay, slot, target)
-    }
-
-    /// How somebody is in a slot of its stay when its steps are `target`; straight on, before and after what is known of it.
-    #[inline(always)]
-    fn instant(&self, gait: &Gait, stay: &Stay, slot: i32, target: f32) -> Instant {
-        let (from, to) = between(stay.steps(gait), slot);
-        let share = (target - from) / (to - from).max(1.0);
-        let (inside, slots) = (share.clamp(0.0, 1.0), self.info().slots);
-        let (sin, cos) = sin_cos(stay.heading(gait, slot, inside));
-        let ahead = Vec2::new(sin, cos);
-        let (own, page) = page_of(&self.rows, stay.enter + slot, slots);
-        let since = page - page_of(&self.rows, stay.enter, slots).1;
-        let number = self.ways.lanes[stay.lanes as usize + since];
-        let at = self.rows.find(&self.tables, stay.kind as usize, own, number.into());
-        let (knots, unit) = (rows::four_knots(&self.tables, at), self.info().metres_per_unit);
-        let (place, velocity) = weights(inside);
-        let velocity = rows::weigh(&knots, &velocity) * unit;
-        let place = rows::weigh(&knots, &place) * unit + velocity * (share - inside);
-        let speed = velocity.length() * (slots as f32 / self.info().period_secs);
-        let place = if stay.turn == 0.0 { place } else { turned(place, stay.turn) };
-        Instant { place: place + stay.origin, speed, ahead }
+        stay.at_steps(slot, target)
     }
 }
 
-/// Turned so that the x axis points along the angle's (cos, sin).
-#[inline(always)]
-fn turned(place: Vec2, angle: f32) -> Vec2 {
-    let (sin, cos) = sin_cos(angle);
-    Vec2::new(cos, sin).rotate(place)
+impl Instant {
+    /// Where a foot of whoever is like this is in the middle of its stance, and where it looks, as x and z.
+    #[inline(always)]
+    pub fn print(&self, table: &GaitTable, foot: usize) -> (Vec2, Vec2) {
+        let (sin, cos) = sin_cos(self.heading);
+        let (low, fast) = table.between(self.velocity.length());
+        let own = table.prints[low][foot].lerp(table.prints[low + 1][foot], fast);
+        let (left, ahead) = (Vec2::new(cos, -sin), Vec2::new(sin, cos));
+        (self.place + left * own.x + ahead * own.y, ahead)
+    }
 }
