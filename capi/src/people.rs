@@ -89,7 +89,7 @@ fn walkers<'a>(
     roots: &'a Roots,
 ) -> impl Iterator<Item = CqPerson> + 'a {
     let copy = copy(world, spot);
-    let mut bodies = world.bodies(spot, secs);
+    let mut bodies = world.bodies(spot, secs).into_iter();
     let people = world.people_of(spot.instance as usize, copy, moment);
     people.enumerate().map(move |(i, person)| {
         let (vx, vz) = (roots.vx()[i], roots.vz()[i]);
@@ -170,7 +170,7 @@ pub fn pose(world: &World, secs: f64, person: &CqPerson) -> Result<Pose> {
         return Err(problem("expected somebody who walks in this world, found another"));
     }
     let spot = Spot { instance: person.patch, shift: DVec2::ZERO };
-    let body: Option<Walking> = world.bodies(spot, secs).nth(person.number as usize);
+    let body: Option<Walking> = world.bodies(spot, secs).get(person.number as usize).copied();
     let body = body.ok_or_else(|| problem("expected the time at which the person was found, found another"))?;
     let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
     let root = body.pose(&gait.table, &mut rotations);

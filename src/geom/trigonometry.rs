@@ -11,13 +11,14 @@ const ROUNDING: f32 = 12_582_912.0;
 /// of a turn to both sides of the nearest quarter.
 #[inline(always)]
 pub(crate) fn sin_cos(angle: f32) -> (f32, f32) {
-    let quarters = (angle * FRAC_2_PI + ROUNDING) - ROUNDING;
+    let rounded = angle * FRAC_2_PI + ROUNDING;
+    let quarters = rounded - ROUNDING;
     let r = (angle - quarters * QUARTER[0]) - quarters * QUARTER[1];
     let r2 = r * r;
     let sin = r + r * r2 * (-0.166_666_54 + r2 * (0.008_332_161 - r2 * 0.000_195_152_95));
     let cos = 1.0 - 0.5 * r2 + r2 * r2 * (0.041_666_646 + r2 * (-0.001_388_731_6 + r2 * 0.000_024_433_157));
-    // Bits, not branches: quarters of a turn come in no order.
-    let quarter = quarters as i32 as u32;
+    // Bits, not branches: quarters of a turn come in no order. The last ones of the rounded number say which it is.
+    let quarter = rounded.to_bits();
     let other = (sin.to_bits() ^ cos.to_bits()) & (quarter & 1).wrapping_neg();
     let (sin, cos) = (sin.to_bits() ^ other, cos.to_bits() ^ other);
     let sign = |quarter: u32| (quarter & 2) << 30;

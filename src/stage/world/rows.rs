@@ -208,23 +208,6 @@ impl Index {
         (four(at), four(at + usize::from(run.lanes)))
     }
 
-    /// Which page a slot is in.
-    #[inline(always)]
-    pub fn page_of(&self, slot: usize) -> usize {
-        self.slots[slot].page as usize
-    }
-
-    /// Where the control points of a kind's lane number `number` (in its page) are in a slot: its x in the first of four rows, how
-    /// far behind its z is, and from row to row.
-    #[inline(always)]
-    pub fn find(&self, tables: &Tables, kind: usize, slot: usize, number: usize) -> [usize; 3] {
-        let Slot { begin, row, page } = self.slots[slot];
-        let index = page as usize * tables.kinds() + kind;
-        let first = if index == 0 { 0 } else { tables.lane_ends[index - 1] as usize };
-        let lanes = tables.lane_ends[index] as usize - first;
-        [begin + 2 * (first - self.pages[page as usize].lane) + number, lanes, row as usize]
-    }
-
     pub fn bytes(&self) -> usize {
         let shared = self.shared.as_ref().map_or(0, |shared| shared.ends.len() + shared.instances.len());
         let four = self.people.len() + shared;

@@ -6,8 +6,9 @@
 
 use glam::{Vec2, Vec3};
 
-use super::walks::Stay;
-use super::{Gait, GaitTable, Walking, World};
+use super::bodies::{Instants, States};
+use super::eights::{Eight, Eights, WIDTH};
+use super::{GaitTable, World};
 
 /// How a foot goes from one footprint to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,6 +30,13 @@ pub struct Foot {
 
 /// Who takes small steps lifts feet by this share of them, and by at most so many metres.
 const SMALL_STEP: (f32, f32) = (0.25, 0.03);
+
+/// Cycles since the middle of a foot's stance, 0 to 1.
+#[inline(always)]
+pub(super) fn since(phase: f32, foot: usize) -> f32 {
+    let since = phase - 0.5 * foot as f32;
+    if since < 0.0 { since + 1.0 } else { since }
+}
 
 impl GaitTable {
     /// How far the feet are between their footprints, each from the middle of its own stance on (0 to 1).
@@ -58,49 +66,112 @@ impl Swing {
     }
 }
 
-impl World {
-    /// Where the feet of a `body` are, who is in slot `at` of its `stay`; `None` if the table knows no footprints.
-    #[inline(always)]
-    pub(super) fn feet<'a>(&'a self, gait: &Gait, stay: &Stay<'a>, at: (i32, f32), body: &Walking) -> Option<[Foot; 2]> {
-        if gait.table.prints.is_empty() {
-            return None;
-        }
-        let fast = gait.table.between(body.velocity.length());
-        Some([self.foot(gait, stay, at, body, fast, 0), self.foot(gait, stay, at, body, fast, 1)])
+/// Where feet stand in the middle of their stances, by speed: lines from one cycle of the table to the next.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Prints {
+    /// Of who stands: to the left, ahead.
+    first: [Vec2; 2],
+    lines: Vec<Line>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Line {
+    /// Speed it begins at, and by how much more it ends.
+    speed: f32,
+    width: f32,
+    slopes: [Vec2; 2],
+}
+
+impl Prints {
+    pub fn new(table: &GaitTable) -> Self {
+        let cycles = table.speeds.windows(2).zip(table.prints.windows(2));
+        let line = |(speeds, prints): (&[f32], &[[Vec2; 2]])| {
+            let width = speeds[1] - speeds[0];
+            let slopes = [0, 1].map(|foot| (prints[1][foot] - prints[0][foot]) / width);
+            Line { speed: speeds[0], width, slopes }
+        };
+        Self { first: table.prints.first().copied().unwrap_or_default(), lines: cycles.map(line).collect() }
     }
 
+    /// From where people are to where a foot of theirs stands.
     #[inline(always)]
-    fn foot<'a>(
-        &'a self,
-        gait: &Gait,
-        stay: &Stay<'a>,
-        at: (i32, f32),
-        body: &Walking,
-        (low, fast): (usize, f32),
-        foot: usize,
-    ) -> Foot {
-        let since = body.phase - 0.5 * foot as f32;
-        let since = if since < 0.0 { since + 1.0 } else { since };
-        let Swing { share, height } = gait.table.swing((low, fast), foot, since);
-        // Whoever stands on a footprint needs to know that one alone.
-        let near = self.footprint(gait, stay, at, if share >= 1.0 { 1.0 - since } else { -since }, foot);
-        if share <= 0.0 || share >= 1.0 {
-            let place = near.0 - body.place;
-            return Foot { ball: Vec3::new(place.x, height, place.y), ahead: near.1 };
+    fn stand(&self, people: &mut States, foot: usize) {
+        let mut own = Eights([[self.first[foot].x; WIDTH], [self.first[foot].y; WIDTH]]);
+        for line in &self.lines {
+            for i in 0..WIDTH {
+                let over = (people.speed[i] - line.speed).max(0.0).min(line.width);
+                own.put(i, own.at(i) + line.slopes[foot] * over);
+            }
         }
-        let next = self.footprint(gait, stay, at, 1.0 - since, foot);
-        let mut lift = 0.0;
-        if low == 0 {
-            let small = (near.0.distance(next.0) + 0.1 * near.1.distance(next.1)) * SMALL_STEP.0;
-            lift = small.min(SMALL_STEP.1) * (1.0 - fast) * 4.0 * share * (1.0 - share);
+        for i in 0..WIDTH {
+            let (ahead, own) = (people.ahead.at(i), own.at(i));
+            let left = Vec2::new(ahead.y, -ahead.x);
+            people.place.put(i, people.place.at(i) + left * own.x + ahead * own.y);
         }
-        let place = near.0.lerp(next.0, share) - body.place;
-        Foot { ball: Vec3::new(place.x, height + lift, place.y), ahead: near.1.lerp(next.1, share) }
+    }
+}
+
+/// A step of eight people, each with the same foot.
+#[derive(Default)]
+pub(super) struct Steps {
+    /// In the middle of the stance before, and after.
+    pub before: Instants,
+    pub after: Instants,
+    /// Where it stands then, and where its owner looks.
+    from: States,
+    to: States,
+    /// How far the foot is on its way, how high its ball, and how slow its owner is: 1 who stands, 0 from the slowest cycle on.
+    share: Eight,
+    height: Eight,
+    slow: Eight,
+    /// What follows.
+    ball: Eights<3>,
+    ahead: Eights<2>,
+}
+
+impl Steps {
+    /// Finds where the feet are of who are as `now` says, and so far through their cycles.
+    #[inline(always)]
+    pub fn find(&mut self, world: &World, table: &GaitTable, foot: usize, phase: &Eight, now: &States) {
+        for (i, &phase) in phase.iter().enumerate() {
+            let (low, fast) = table.between(now.speed[i]);
+            let Swing { share, height } = table.swing((low, fast), foot, since(phase, foot));
+            (self.share[i], self.height[i]) = (share, height);
+            self.slow[i] = if low == 0 { 1.0 - fast } else { 0.0 };
+        }
+        self.before.find(world.ways.rate, &mut self.from);
+        self.after.find(world.ways.rate, &mut self.to);
+        world.ways.prints.stand(&mut self.from, foot);
+        world.ways.prints.stand(&mut self.to, foot);
+        self.place(now);
     }
 
-    /// Where a foot stands `cycles` of two steps later, and where it looks.
+    /// Places the feet between their footprints.
     #[inline(always)]
-    fn footprint<'a>(&'a self, gait: &Gait, stay: &Stay<'a>, at: (i32, f32), cycles: f32, foot: usize) -> (Vec2, Vec2) {
-        self.later(gait, stay, at, cycles).print(&gait.table, foot)
+    fn place(&mut self, now: &States) {
+        let Self { from, to, share, height, slow, ball, ahead, .. } = self;
+        for i in 0..WIDTH {
+            let share = share[i].clamp(0.0, 1.0);
+            let (looked, looks) = (from.ahead.at(i), to.ahead.at(i));
+            let (from, to) = (from.place.at(i), to.place.at(i));
+            let small = (length(to - from) + 0.1 * length(looks - looked)) * SMALL_STEP.0;
+            let lift = small.min(SMALL_STEP.1) * slow[i] * 4.0 * share * (1.0 - share);
+            // On one of them exactly, where it stands on one.
+            let place = from * (1.0 - share) + to * share - now.place.at(i);
+            ball.put(i, Vec3::new(place.x, height[i] + lift, place.y));
+            ahead.put(i, looked * (1.0 - share) + looks * share);
+        }
     }
+
+    /// The foot of the one at place `i`.
+    #[inline(always)]
+    pub fn at(&self, i: usize) -> Foot {
+        Foot { ball: self.ball.at(i), ahead: self.ahead.at(i) }
+    }
+}
+
+/// Not glam's, which is a vector instruction of its own for two numbers.
+#[inline(always)]
+fn length(v: Vec2) -> f32 {
+    (v.x * v.x + v.y * v.y).sqrt()
 }

@@ -8,12 +8,10 @@
 
 use glam::{Quat, Vec2, Vec3};
 
+use super::eights::{Eights, WIDTH};
 use super::feet::Foot;
 use crate::geom::Rotation;
 use crate::motion::{JOINT_COUNT, Joint, canonical, joint};
-
-/// People side by side.
-pub(super) const WIDTH: usize = 8;
 
 /// Largest part of a leg's length that is used, so that knees never lock.
 const STRETCH: f32 = 0.995;
@@ -34,55 +32,6 @@ const TINY: f32 = 1e-9;
 
 /// First joints of the legs.
 const UPS: [usize; 2] = [joint::LEFT_UP_LEG, joint::RIGHT_UP_LEG];
-
-type Eight = [f32; WIDTH];
-
-/// Numbers of eight people side by side.
-#[derive(Clone, Copy)]
-struct Eights<const N: usize>([Eight; N]);
-
-impl<const N: usize> Default for Eights<N> {
-    fn default() -> Self {
-        Self([[0.0; WIDTH]; N])
-    }
-}
-
-// Written out, as closures would not be inlined into what is compiled for wide instructions.
-impl Eights<2> {
-    #[inline(always)]
-    fn at(&self, i: usize) -> Vec2 {
-        Vec2::new(self.0[0][i], self.0[1][i])
-    }
-
-    #[inline(always)]
-    fn put(&mut self, i: usize, v: Vec2) {
-        (self.0[0][i], self.0[1][i]) = (v.x, v.y);
-    }
-}
-
-impl Eights<3> {
-    #[inline(always)]
-    fn at(&self, i: usize) -> Vec3 {
-        Vec3::new(self.0[0][i], self.0[1][i], self.0[2][i])
-    }
-
-    #[inline(always)]
-    fn put(&mut self, i: usize, v: Vec3) {
-        (self.0[0][i], self.0[1][i], self.0[2][i]) = (v.x, v.y, v.z);
-    }
-}
-
-impl Eights<4> {
-    #[inline(always)]
-    fn at(&self, i: usize) -> Rotation {
-        Rotation { axis: Vec3::new(self.0[0][i], self.0[1][i], self.0[2][i]), cosine: self.0[3][i] }
-    }
-
-    #[inline(always)]
-    fn put(&mut self, i: usize, Rotation { axis, cosine }: Rotation) {
-        (self.0[0][i], self.0[1][i], self.0[2][i], self.0[3][i]) = (axis.x, axis.y, axis.z, cosine);
-    }
-}
 
 /// Legs of up to eight people.
 #[derive(Default)]
@@ -283,7 +232,7 @@ impl Leg {
         let turn = self.turns[2];
         let tip = turn * self.bones.toes;
         let scale = 1.0 / tip.length().max(TINY);
-        let now = (tip.y * scale).max(-1.0).min(1.0);
+        let now = (tip.y * scale).clamp(-1.0, 1.0);
         let then = now.max(((-TOES - self.ball.y) * scale).min(1.0));
         let up = Opening::new([cosine(now), now], [cosine(then), then], 1.0);
         // About the level axis at right angles to the tip.

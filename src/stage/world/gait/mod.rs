@@ -13,25 +13,28 @@
 //! | file | what |
 //! |---|---|
 //! | `mod.rs` | the table of poses, the steps of a world |
-//! | `walks.rs` | ways of people over borders: where and how somebody is at a step before or after |
+//! | `walks.rs` | ways of people over borders: when somebody is at a step before or after |
+//! | `bodies.rs` | where bodies are at a time |
 //! | `feet.rs` | footprints, and the feet between them |
-//! | `leg.rs` | a pose whose legs reach the feet |
+//! | `poses.rs` | poses of bodies |
+//! | `leg.rs` | poses whose legs reach the feet |
+//! | `eights.rs` | numbers of eight people side by side |
 
+mod bodies;
+mod eights;
 mod feet;
 mod leg;
+mod poses;
 mod walks;
 
 use glam::{Quat, Vec2, Vec3};
 
 pub use feet::{Foot, Swing};
-use leg::{Legs, WIDTH};
 pub(super) use walks::Ways;
-use walks::{Instant, Stay};
 
+use super::World;
 use super::tables::expect;
-use super::{Spot, World};
 use crate::Result;
-use crate::geom::sin_cos;
 use crate::motion::JOINT_COUNT;
 
 /// Steps are stored in this part of a cycle of two steps.
@@ -109,39 +112,6 @@ impl GaitTable {
         (low, ((speed - a) / (b - a)).clamp(0.0, 1.0))
     }
 
-    /// The pose at a speed and phase, and the hips relative to where somebody is. No allocation.
-    #[inline(always)]
-    pub fn pose(&self, speed: f32, phase: f32, pose: &mut [Quat; JOINT_COUNT]) -> Vec3 {
-        let (low, fast) = self.between(speed);
-        let at = phase.clamp(0.0, 1.0) * self.phases as f32;
-        let first = (at as usize).min(self.phases - 1);
-        let late = at - first as f32;
-        let next = if first + 1 < self.phases { first + 1 } else { 0 };
-        let (slower, faster) = (low * self.phases, (low + 1) * self.phases);
-        let of = [slower + first, slower + next, faster + first, faster + next];
-        let weights = [(1.0 - fast) * (1.0 - late), (1.0 - fast) * late, fast * (1.0 - late), fast * late];
-        let rows = self.rotations.as_chunks::<JOINT_COUNT>().0;
-        let (a, b, c, d) = (&rows[of[0]], &rows[of[1]], &rows[of[2]], &rows[of[3]]);
-        let mut scales = [1.0_f32; JOINT_COUNT.next_multiple_of(8)];
-        for joint in 0..JOINT_COUNT {
-            pose[joint] = a[joint] * weights[0] + b[joint] * weights[1] + c[joint] * weights[2] + d[joint] * weights[3];
-            scales[joint] = pose[joint].length_squared();
-        }
-        // All roots at once.
-        scales.iter_mut().for_each(|scale| *scale = 1.0 / scale.sqrt());
-        for joint in 0..JOINT_COUNT {
-            pose[joint] = pose[joint] * scales[joint];
-        }
-        let hips = &self.hips;
-        hips[of[0]] * weights[0] + hips[of[1]] * weights[1] + hips[of[2]] * weights[2] + hips[of[3]] * weights[3]
-    }
-
-    /// Poses of bodies, and their hips in the frame of their places, as many as there are of each. Eight bodies at a time cost half
-    /// as much as one by one. No allocation.
-    pub fn poses(&self, bodies: &[Walking], poses: &mut [[Quat; JOINT_COUNT]], hips: &mut [Vec3]) {
-        pulp::Arch::new().dispatch(Posing { table: self, bodies, poses, hips });
-    }
-
     fn validate(&self) -> Result<()> {
         let cycles = self.speeds.len();
         let shape = (2..=64).contains(&cycles) && self.strides.len() == cycles && (1..=1024).contains(&self.phases);
@@ -172,27 +142,6 @@ impl GaitTable {
     }
 }
 
-impl Walking {
-    /// Root and rotations of the canonical skeleton for this body, in the frame of its place. No allocation.
-    pub fn pose(&self, table: &GaitTable, pose: &mut [Quat; JOINT_COUNT]) -> Vec3 {
-        let mut hips = Vec3::ZERO;
-        table.poses(std::slice::from_ref(self), std::slice::from_mut(pose), std::slice::from_mut(&mut hips));
-        hips
-    }
-
-    /// The same without regard to feet, the hips relative to where it is; and where it looks, as x and z.
-    #[inline(always)]
-    fn stride(&self, table: &GaitTable, pose: &mut [Quat; JOINT_COUNT]) -> (Vec3, Vec2) {
-        let hips = table.pose(self.velocity.length(), self.phase, pose);
-        let (half_sin, half_cos) = sin_cos(0.5 * self.heading);
-        let facing = Vec2::new(2.0 * half_sin * half_cos, half_cos * half_cos - half_sin * half_sin);
-        pose[0] = leg::about_vertical(half_cos, half_sin, pose[0].into()).into();
-        let left = Vec2::new(facing.y, -facing.x);
-        let across = left * hips.x + facing * hips.z;
-        (Vec3::new(across.x, hips.y, across.y), facing)
-    }
-}
-
 impl Gait {
     /// Whether it fits a world whose walkers stay so many slots, with so many crossings.
     pub(super) fn validate(&self, stays: u64, crossings: usize) -> Result<()> {
@@ -215,100 +164,4 @@ impl Gait {
             + 2 * (self.steps.len() + self.headings.len())
             + 4 * (self.crossing_phases.len() + self.crossing_paces.len())
     }
-}
-
-impl World {
-    /// Bodies of all who walk in a patch at `time` (seconds, any), in the order of [`World::roots`]; none if the world has no gait.
-    /// Places are relative to the patch's own origin, turned as the patch is. O(1) for each.
-    pub fn bodies(&self, spot: Spot, time: f64) -> Vec<Walking> {
-        let mut bodies = Vec::new();
-        self.bodies_of(std::iter::once(spot), time, &mut bodies);
-        bodies
-    }
-
-    /// The same for several patches, one after the other, appended to `bodies`. Allocates only where these have never been as many.
-    pub fn bodies_of(&self, spots: impl Iterator<Item = Spot>, time: f64, bodies: &mut Vec<Walking>) {
-        if let Some(gait) = &self.tables.gait {
-            pulp::Arch::new().dispatch(Walks { world: self, gait, spots, time, bodies });
-        }
-    }
-}
-
-/// Poses of bodies, in the widest instructions there are.
-struct Posing<'a> {
-    table: &'a GaitTable,
-    bodies: &'a [Walking],
-    poses: &'a mut [[Quat; JOINT_COUNT]],
-    hips: &'a mut [Vec3],
-}
-
-impl pulp::NullaryFnOnce for Posing<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self { table, bodies, poses, hips } = self;
-        let mut legs = Legs::default();
-        for ((bodies, poses), hips) in bodies.chunks(WIDTH).zip(poses.chunks_mut(WIDTH)).zip(hips.chunks_mut(WIDTH)) {
-            for (i, body) in bodies.iter().enumerate() {
-                let (root, facing) = body.stride(table, &mut poses[i]);
-                hips[i] = root;
-                if let Some(feet) = &body.feet {
-                    legs.put(i, &poses[i], root, facing, feet);
-                }
-            }
-            legs.lead(bodies.len());
-            for (i, body) in bodies.iter().enumerate() {
-                if body.feet.is_some() {
-                    hips[i].y = legs.take(i, &mut poses[i]);
-                }
-                hips[i] += Vec3::new(body.place.x, 0.0, body.place.y);
-            }
-        }
-    }
-}
-
-/// Bodies of all who walk in some patches, likewise.
-struct Walks<'a, S> {
-    world: &'a World,
-    gait: &'a Gait,
-    spots: S,
-    time: f64,
-    bodies: &'a mut Vec<Walking>,
-}
-
-impl<S: Iterator<Item = Spot>> pulp::NullaryFnOnce for Walks<'_, S> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self { world, gait, spots, time, bodies } = self;
-        let (info, moment) = (world.info(), world.moment(time));
-        let at = time / f64::from(info.period_secs) * f64::from(info.slots);
-        let fraction = (at - at.floor()) as f32;
-        for spot in spots {
-            let instance = spot.instance as usize;
-            let own = moment.later(world.tables.instance_phases[instance], info.slots);
-            for lane in world.rows.lanes(&world.tables, world.kind_of(instance), own.slot) {
-                let stay = world.ways.stay(world, gait, instance, lane.walker());
-                let slot = own.slot as i32 + lane.lap() as i32 * info.slots as i32 - stay.enter;
-                bodies.push(world.body(gait, &stay, (slot, fraction)));
-            }
-        }
-    }
-}
-
-impl World {
-    /// The body of somebody in a slot of its stay.
-    #[inline(always)]
-    fn body<'a>(&'a self, gait: &Gait, stay: &Stay<'a>, at: (i32, f32)) -> Walking {
-        let Instant { place, velocity, heading } = stay.at(at.0, at.1);
-        let body = Walking { place, velocity, heading, phase: fraction_of(stay.phase(at.0, at.1)), feet: None };
-        Walking { feet: self.feet(gait, stay, at, &body), ..body }
-    }
-}
-
-/// What a phase is beyond whole cycles. Phases are not below zero, so this needs no call of the system's mathematics.
-fn fraction_of(phase: f32) -> f32 {
-    phase - phase as i32 as f32
 }

@@ -2,29 +2,26 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec2, Vec2, Vec4, Vec4Swizzles};
+use glam::{DVec2, Vec2, Vec3};
 
-use super::super::moment::weights;
 use super::super::{Lane, Tables, UNITS_PER_METRE, World, rows};
-use super::{Gait, GaitTable, PER_RADIAN, STEPS_PER_CYCLE};
+use super::feet::Prints;
+use super::{Gait, PER_RADIAN, STEPS_PER_CYCLE};
 use crate::Result;
-use crate::geom::sin_cos;
 
-/// No stay before or after.
-const NONE: u32 = u32::MAX;
 /// Borders that a search for a step crosses at most; a step crosses one or two.
 const FAR: usize = 64;
 /// Knots that a slot needs.
-const ORDER: usize = 4;
+pub(super) const ORDER: usize = 4;
 
 /// What headings are stored in.
-const RADIANS: f32 = 1.0 / PER_RADIAN;
+pub(super) const RADIANS: f32 = 1.0 / PER_RADIAN;
 
 /// A knot of somebody's stay: x and z of the way's control point; steps and heading when the slot of the same number begins.
 /// All that is asked about somebody lies side by side.
-type Knot = [i16; 4];
+pub(super) type Knot = [i16; 4];
 const STEPS: usize = 2;
-const HEADING: usize = 3;
+pub(super) const HEADING: usize = 3;
 
 /// Where the knots of a walker of a kind are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,40 +49,35 @@ pub(in crate::stage::world) struct Ways {
     tracks: Vec<Track>,
     knots: Vec<Knot>,
     /// Crossings before and after every crossing; none if feet do not need them.
-    links: Vec<[u32; 2]>,
+    links: Vec<[Option<Link>; 2]>,
+    pub(super) prints: Prints,
     /// Slots per second.
-    rate: f32,
+    pub(super) rate: f32,
+}
+
+/// A crossing, and whose it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Link {
+    crossing: u32,
+    instance: u32,
 }
 
 /// A stay of somebody, seen from a patch: its numbers, and where its patch is.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::stage::world) struct Stay<'a> {
-    crossing: u32,
-    knots: &'a [Knot],
+    link: Link,
+    pub(super) knots: &'a [Knot],
     slots: i32,
     /// The slot it comes in.
     pub enter: i32,
-    /// Origin of its patch, relative to that of the patch it is seen from.
-    origin: Vec2,
     /// How its patch is turned: sine and cosine times the metres of a unit, and the angle.
-    turns: [f32; 2],
-    turn: f32,
+    pub(super) turns: Vec3,
+    /// Origin of its patch, relative to that of the patch it is seen from.
+    pub(super) origin: Vec2,
     /// Phase that it begins with.
     phase: f32,
     /// Factor of its steps.
     pace: f32,
-    /// Slots per second.
-    rate: f32,
-}
-
-/// How somebody is at some time of a stay.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Instant {
-    pub place: Vec2,
-    /// m/s.
-    pub velocity: Vec2,
-    /// Where it looks, radians.
-    pub heading: f32,
 }
 
 impl Ways {
@@ -94,7 +86,7 @@ impl Ways {
     pub fn new(tables: &Tables, first_crossing: &[u32]) -> Result<Self> {
         let Some(gait) = &tables.gait else { return Ok(Self::default()) };
         let rate = tables.info.slots as f32 / tables.info.period_secs;
-        let mut ways = Self { rate, ..Self::default() };
+        let mut ways = Self { rate, prints: Prints::new(&gait.table), ..Self::default() };
         let (mut at, mut stays) = (0, 0);
         for kind in 0..tables.kinds() {
             ways.first_walker.push(ways.tracks.len() as u32);
@@ -132,7 +124,9 @@ impl Ways {
                     let on = page * tables.info.page as usize + of.lap() as usize * slots;
                     let at = page_begin + 2 * (lanes.start - first) + lane - lanes.start;
                     let knots = &mut self.knots[track.knots()];
-                    for step in (0..steps).filter(|step| (on + step).wrapping_sub(track.enter.into()) < track.slots.into()) {
+                    for step in
+                        (0..steps).filter(|step| (on + step).wrapping_sub(track.enter.into()) < track.slots.into())
+                    {
                         for (i, knot) in knots[on + step - usize::from(track.enter)..][..ORDER].iter_mut().enumerate() {
                             let x = at + (step + i) * row;
                             (knot[0], knot[1]) = (tables.rows[x], tables.rows[x + lanes.len()]);
@@ -149,14 +143,16 @@ impl Ways {
         let mut numbers = gait.steps.iter().zip(&gait.headings);
         for track in &self.tracks {
             let knots = self.knots[track.knots()].iter_mut().take(usize::from(track.slots) + 1);
-            knots.zip(&mut numbers).for_each(|(knot, (&steps, &heading))| (knot[STEPS], knot[HEADING]) = (steps, heading));
+            knots
+                .zip(&mut numbers)
+                .for_each(|(knot, (&steps, &heading))| (knot[STEPS], knot[HEADING]) = (steps, heading));
         }
     }
 
     /// Finds who goes where: stays follow each other without a gap.
     fn link(&mut self, tables: &Tables, first_crossing: &[u32]) {
         let (slots, identities) = (i64::from(tables.info.slots), &tables.identities);
-        let mut cycles: BTreeMap<u32, Vec<(i64, u32, i64)>> = BTreeMap::new();
+        let mut cycles: BTreeMap<u32, Vec<(i64, Link, i64)>> = BTreeMap::new();
         for (instance, &kind) in tables.instance_kinds.iter().enumerate() {
             let first = first_crossing[instance];
             for crossing in first..first_crossing[instance + 1] {
@@ -164,19 +160,20 @@ impl Ways {
                 let own = identities.laps(crossing as usize) * slots + i64::from(track.enter);
                 let when = own - i64::from(tables.instance_phases[instance]);
                 let of = cycles.entry(identities.cycle(crossing as usize)).or_default();
-                of.extend((track.slots > 0).then_some((when, crossing, i64::from(track.slots))));
+                let link = Link { crossing, instance: instance as u32 };
+                of.extend((track.slots > 0).then_some((when, link, i64::from(track.slots))));
             }
         }
-        self.links = vec![[NONE; 2]; first_crossing.last().map_or(0, |&n| n as usize)];
+        self.links = vec![[None; 2]; first_crossing.last().map_or(0, |&n| n as usize)];
         for (cycle, mut stays) in cycles {
-            stays.sort_unstable();
+            stays.sort_unstable_by_key(|&(when, link, slots)| (when, link.crossing, slots));
             let around = identities.around(cycle).0 * slots;
-            let again = stays.first().map(|&(when, crossing, slots)| (when + around, crossing, slots));
+            let again = stays.first().map(|&(when, link, slots)| (when + around, link, slots));
             stays.extend(again.filter(|_| around > 0));
             for pair in stays.windows(2) {
                 if pair[0].0 + pair[0].2 == pair[1].0 {
-                    self.links[pair[0].1 as usize][1] = pair[1].1;
-                    self.links[pair[1].1 as usize][0] = pair[0].1;
+                    self.links[pair[0].1.crossing as usize][1] = Some(pair[1].1);
+                    self.links[pair[1].1.crossing as usize][0] = Some(pair[0].1);
                 }
             }
         }
@@ -187,45 +184,41 @@ impl Ways {
     pub fn stay<'a>(&'a self, world: &World, gait: &Gait, instance: usize, walker: usize) -> Stay<'a> {
         let track = self.tracks[self.first_walker[world.kind_of(instance)] as usize + walker];
         let crossing = world.first_crossing[instance] + walker as u32;
+        let [sin, cos] = world.rows.turns[instance];
         Stay {
-            crossing,
+            link: Link { crossing, instance: instance as u32 },
             knots: &self.knots[track.knots()],
             slots: track.slots.into(),
             enter: track.enter.into(),
+            turns: Vec3::new(sin, cos, world.turn(instance)),
             origin: Vec2::ZERO,
-            turns: world.rows.turns[instance],
-            turn: world.turn(instance),
             phase: gait.crossing_phases[crossing as usize],
             pace: gait.crossing_paces[crossing as usize],
-            rate: self.rate,
         }
     }
 
     /// The stay before (`side` 0) or after (1) a stay, seen from the same patch.
     #[cold]
     fn neighbour<'a>(&'a self, world: &World, gait: &Gait, stay: &Stay, side: usize) -> Option<Stay<'a>> {
-        let from = stay.crossing as usize;
-        let to = *self.links.get(from)?.get(side)?;
-        if to == NONE {
-            return None;
-        }
-        let instance_of = |crossing: u32| world.first_crossing.partition_point(|&first| first <= crossing) - 1;
-        let [here, there] = [instance_of(stay.crossing), instance_of(to)];
-        let next = self.stay(world, gait, there, (to - world.first_crossing[there]) as usize);
-        let when = |crossing: u32, instance: usize, stay: &Stay| {
-            let own = world.tables.identities.laps(crossing as usize) * i64::from(world.info().slots);
-            own + i64::from(stay.enter) - i64::from(world.tables.instance_phases[instance])
+        let to = (*self.links.get(stay.link.crossing as usize)?.get(side)?)?;
+        let [here, there] = [stay.link, to].map(|link| link.instance as usize);
+        let next = self.stay(world, gait, there, (to.crossing - world.first_crossing[there]) as usize);
+        let when = |stay: &Stay| {
+            let laps = world.tables.identities.laps(stay.link.crossing as usize);
+            let phase = world.tables.instance_phases[stay.link.instance as usize];
+            laps * i64::from(world.info().slots) + i64::from(stay.enter) - i64::from(phase)
         };
         // From the last crossing of a cycle it is once around to the first.
-        let (now, then) = (when(stay.crossing, here, stay), when(to, there, &next));
+        let (now, then) = (when(stay), when(&next));
         let rounds = if side == 1 { i32::from(then <= now) } else { -i32::from(then >= now) };
-        let shift = world.copies_on(from, to as usize, rounds);
+        let shift = world.copies_on(stay.link.crossing as usize, to.crossing as usize, rounds);
         let way = world.place(there) + shift - world.place(here);
         Some(Stay { origin: stay.origin + way.as_vec2(), ..next })
     }
 
     pub fn bytes(&self) -> usize {
-        4 * self.first_walker.len() + 8 * (self.tracks.len() + self.knots.len() + self.links.len())
+        let links = size_of::<[Option<Link>; 2]>() * self.links.len();
+        4 * self.first_walker.len() + 8 * (self.tracks.len() + self.knots.len()) + links
     }
 }
 
@@ -236,44 +229,21 @@ fn between(knots: &[Knot], slot: i32) -> (f32, f32) {
     (pair[0][STEPS].into(), pair[1][STEPS].into())
 }
 
-#[inline(always)]
-fn wide([x, z, steps, heading]: Knot) -> Vec4 {
-    Vec4::new(x.into(), z.into(), steps.into(), heading.into())
-}
-
 impl Stay<'_> {
-    /// Its phase, counted on from that which it came in with.
+    /// Its phase in a slot of the stay, of which a share is gone: what it is beyond whole cycles.
     #[inline(always)]
-    pub fn phase(&self, slot: i32, share: f32) -> f32 {
+    pub fn phase(&self, (slot, share): (i32, f32)) -> f32 {
         let (from, to) = between(self.knots, slot);
-        self.phase + (from + (to - from) * share) / STEPS_PER_CYCLE * self.pace
+        let phase = self.phase + (from + (to - from) * share) / STEPS_PER_CYCLE * self.pace;
+        // Not below zero, so this needs no call of the system's mathematics.
+        phase - phase as i32 as f32
     }
 
-    /// How somebody is in slot number `slot` of the stay, a share of it later; straight on, before and after the slot.
+    /// How far in a slot steps are `target`.
     #[inline(always)]
-    pub(super) fn at(&self, slot: i32, share: f32) -> Instant {
-        let inside = share.clamp(0.0, 1.0);
-        let knots = &self.knots[slot as usize..][..ORDER];
-        let (place, velocity) = weights(inside);
-        let velocity = self.weigh(knots, &velocity);
-        let place = self.weigh(knots, &place) + velocity * (share - inside) + self.origin;
-        let (from, to) = (knots[0][HEADING], knots[1][HEADING]);
-        let heading = (f32::from(from) + f32::from(to.wrapping_sub(from)) * inside) * RADIANS - self.turn;
-        Instant { place, velocity: velocity * self.rate, heading }
-    }
-
-    /// A weighted sum of control points, as the patch is turned, metres.
-    #[inline(always)]
-    fn weigh(&self, knots: &[Knot], w: &[f32; ORDER]) -> Vec2 {
-        let sum = wide(knots[0]) * w[0] + wide(knots[1]) * w[1] + wide(knots[2]) * w[2] + wide(knots[3]) * w[3];
-        Vec2::new(self.turns[1], self.turns[0]).rotate(sum.xy())
-    }
-
-    /// How somebody is where its steps are `target` in a slot.
-    #[inline(always)]
-    fn at_steps(&self, slot: i32, target: f32) -> Instant {
+    fn share(&self, slot: i32, target: f32) -> f32 {
         let (from, to) = between(self.knots, slot);
-        self.at(slot, (target - from) / (to - from).max(1.0))
+        (target - from) / (to - from).max(1.0)
     }
 
     /// The slot in which steps are `target`, sought from one on; or that it is before (-1) or after (1) all of them.
@@ -301,23 +271,35 @@ impl World {
         DVec2::new(on(0), on(1)) / UNITS_PER_METRE
     }
 
-    /// How whoever is in slot number `slot` of a `stay` is `cycles` of two steps later (earlier if negative).
+    /// Gives `to` the stay and the instant in it (as [`Stay::phase`] takes it) at which whoever is in slot number `slot` of a `stay` is
+    /// `cycles` of two steps later (earlier if negative).
     #[inline(always)]
-    pub(super) fn later<'a>(&'a self, gait: &Gait, stay: &Stay<'a>, (slot, share): (i32, f32), cycles: f32) -> Instant {
-        let (from, to) = between(stay.knots, slot);
-        let now = from + (to - from) * share;
+    pub(super) fn later<'a>(
+        &'a self,
+        gait: &Gait,
+        stay: &Stay<'a>,
+        (slot, share): (i32, f32),
+        cycles: f32,
+        to: impl FnOnce(&Stay<'a>, (i32, f32)),
+    ) {
+        let (from, next) = between(stay.knots, slot);
+        let now = from + (next - from) * share;
         let target = now + cycles * STEPS_PER_CYCLE / stay.pace;
         // About where it is. Downwards, as slots are.
-        let guess = slot + ((target - from) / (to - from).max(1.0) + 64.0) as i32 - 64;
+        let guess = slot + ((target - from) / (next - from).max(1.0) + 64.0) as i32 - 64;
         match stay.within(guess.clamp(0, stay.slots - 1), target) {
-            (slot, 0) => stay.at_steps(slot, target),
-            (_, side) => self.beyond(gait, *stay, side, target),
+            (slot, 0) => to(stay, (slot, stay.share(slot, target))),
+            (_, side) => {
+                let (stay, at) = self.beyond(gait, stay, side, target);
+                to(&stay, at);
+            }
         }
     }
 
     /// The same, when it is before (`side` -1) or after (1) the stay.
     #[inline(never)]
-    fn beyond<'a>(&'a self, gait: &Gait, mut stay: Stay<'a>, mut side: i32, mut target: f32) -> Instant {
+    fn beyond<'a>(&'a self, gait: &Gait, stay: &Stay<'a>, mut side: i32, mut target: f32) -> (Stay<'a>, (i32, f32)) {
+        let mut stay = *stay;
         let mut slot = if side < 0 { 0 } else { stay.slots - 1 };
         for _ in 0..FAR {
             let Some(next) = self.ways.neighbour(self, gait, &stay, usize::from(side > 0)) else { break };
@@ -332,18 +314,6 @@ impl World {
                 break;
             }
         }
-        stay.at_steps(slot, target)
-    }
-}
-
-impl Instant {
-    /// Where a foot of whoever is like this is in the middle of its stance, and where it looks, as x and z.
-    #[inline(always)]
-    pub fn print(&self, table: &GaitTable, foot: usize) -> (Vec2, Vec2) {
-        let (sin, cos) = sin_cos(self.heading);
-        let (low, fast) = table.between(self.velocity.length());
-        let own = table.prints[low][foot].lerp(table.prints[low + 1][foot], fast);
-        let (left, ahead) = (Vec2::new(cos, -sin), Vec2::new(sin, cos));
-        (self.place + left * own.x + ahead * own.y, ahead)
+        (stay, (slot, stay.share(slot, target)))
     }
 }
