@@ -203,9 +203,8 @@ impl Index {
     pub fn knots<'a>(&self, tables: &'a Tables, slot: usize, run: &Run) -> (Knots<'a>, Knots<'a>) {
         let read = usize::from(run.live).next_multiple_of(WIDTH);
         let (n, at) = (self.slots[slot].row as usize, run.at as usize);
-        let eights = |at: usize| tables.rows[at..at + read].as_chunks::<WIDTH>().0;
-        let four = |at: usize| [eights(at), eights(at + n), eights(at + 2 * n), eights(at + 3 * n)];
-        (four(at), four(at + usize::from(run.lanes)))
+        let lanes = usize::from(run.lanes);
+        (four_rows(&tables.rows, at, n, read), four_rows(&tables.rows, at + lanes, n, read))
     }
 
     pub fn bytes(&self) -> usize {
@@ -213,6 +212,14 @@ impl Index {
         let four = self.people.len() + shared;
         8 * (self.runs.len() + self.turns.len()) + 16 * self.slots.len() + 24 * self.pages.len() + 4 * four
     }
+}
+
+/// Parts of four rows, eight numbers at a time.
+#[inline(always)]
+fn four_rows(rows: &[i16], at: usize, row: usize, read: usize) -> Knots<'_> {
+    let (a, b) = (&rows[at..at + read], &rows[at + row..at + row + read]);
+    let (c, d) = (&rows[at + 2 * row..at + 2 * row + read], &rows[at + 3 * row..at + 3 * row + read]);
+    [a.as_chunks().0, b.as_chunks().0, c.as_chunks().0, d.as_chunks().0]
 }
 
 /// The four control points of a lane: where its x is in the first of four rows, how far behind its z is, and from row to row.

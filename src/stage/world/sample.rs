@@ -4,6 +4,8 @@
 //! fixed length carry the compiler to vector instructions, `pulp` to the widest the machine has. (Products and sums are never fused,
 //! so that all machines give the same bits.)
 
+use std::ops::Range;
+
 use glam::DVec2;
 
 use super::place::Spot;
@@ -11,6 +13,11 @@ use super::rows::{ByKind, Knots, WIDTH};
 use super::{Moment, World};
 
 type Eight = [f32; WIDTH];
+
+/// People of a lot: their places and velocities fill half of a small cache.
+pub(super) const LOT: usize = 1024;
+/// People of a patch, about: so many more there may be in a lot.
+const MARGIN: usize = 64;
 
 /// Places and velocities, one array for each coordinate. Reused from frame to frame.
 #[derive(Clone, Debug, Default)]
@@ -52,6 +59,24 @@ impl Roots {
         &self.arrays[3][..self.len]
     }
 
+    /// Makes sure that there is room for so many.
+    #[inline(always)]
+    fn room(&mut self, people: usize) {
+        if self.arrays[0].len() < people {
+            self.grow(people * 2);
+        }
+    }
+
+    /// Counts one more patch of a lot, which is handed out when there are enough people in it.
+    #[inline(always)]
+    fn count(&mut self, lot: &mut Range<usize>, most: usize, each: &mut impl FnMut(Range<usize>, &Roots)) {
+        lot.end += 1;
+        if self.len >= most {
+            each(lot.clone(), self);
+            (lot.start, self.len) = (lot.end, 0);
+        }
+    }
+
     #[cold]
     #[inline(never)]
     fn grow(&mut self, people: usize) {
@@ -71,39 +96,50 @@ pub(super) fn sample(
 ) {
     out.grow(world.walkers(moment) + WIDTH);
     out.len = 0;
-    pulp::Arch::new().dispatch(Sampling { world, moment, spots, origin, out });
+    pulp::Arch::new().dispatch(Sampling { world, moment, spots, origin, most: usize::MAX, out, each: |_, _: &_| () });
 }
 
-/// Samples the walkers of all patches.
-pub(super) fn sample_all(world: &World, moment: &Moment, origin: DVec2, out: &mut Roots) {
-    let Some(shared) = &world.rows.shared else {
-        let all = 0..world.instances() as u32;
-        return sample(world, moment, all.map(|instance| Spot { instance, shift: DVec2::ZERO }), origin, out);
-    };
-    out.grow(world.walkers(moment) + WIDTH);
+/// Samples the walkers of all patches, `most` (or a few more) at a time, and hands out each lot with the patches it is of.
+pub(super) fn sample_lots(
+    world: &World,
+    moment: &Moment,
+    origin: DVec2,
+    most: usize,
+    out: &mut Roots,
+    each: impl FnMut(Range<usize>, &Roots),
+) {
+    out.grow(world.walkers(moment).min(most.saturating_add(MARGIN)) + WIDTH);
     out.len = 0;
-    pulp::Arch::new().dispatch(SamplingKinds { world, shared, moment, origin, out });
+    let simd = pulp::Arch::new();
+    if let Some(shared) = &world.rows.shared {
+        return simd.dispatch(SamplingKinds { world, shared, moment, origin, most, out, each });
+    }
+    let spots = (0..world.instances() as u32).map(|instance| Spot { instance, shift: DVec2::ZERO });
+    simd.dispatch(Sampling { world, moment, spots, origin, most, out, each });
 }
 
 /// Weighs what is present of every kind, then turns and moves it for every patch of the kind.
-struct SamplingKinds<'a> {
+struct SamplingKinds<'a, F> {
     world: &'a World,
     shared: &'a ByKind,
     moment: &'a Moment,
     origin: DVec2,
+    most: usize,
     out: &'a mut Roots,
+    each: F,
 }
 
-impl pulp::NullaryFnOnce for SamplingKinds<'_> {
+impl<F: FnMut(Range<usize>, &Roots)> pulp::NullaryFnOnce for SamplingKinds<'_, F> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self { world, shared, moment, origin, out } = self;
+        let Self { world, shared, moment, origin, most, out, mut each } = self;
         let (tables, kinds) = (&world.tables, world.kinds());
         let (place, velocity) = (moment.place, moment.velocity);
         let slot = moment.slot as usize;
         let runs = &world.rows.runs[slot * kinds..(slot + 1) * kinds];
+        let mut lot = 0..0;
         for (kind, run) in runs.iter().enumerate() {
             let live = usize::from(run.live);
             let blocks = live.div_ceil(WIDTH);
@@ -114,39 +150,47 @@ impl pulp::NullaryFnOnce for SamplingKinds<'_> {
             for &instance in shared.of(kind) {
                 let instance = instance as usize;
                 let (first, read) = (out.len, blocks * WIDTH);
+                out.room(first + read);
                 out.len += live;
                 let [sin, cos] = world.rows.turns[instance];
                 let place = (tables.place(instance) - origin).as_vec2();
-                let [ox, oz, ovx, ovz] = &mut out.arrays;
-                let into = [ox, oz, ovx, ovz].map(|array| array[first..first + read].as_chunks_mut::<WIDTH>().0);
+                let into = eights(&mut out.arrays, first..first + read);
                 turn_all(&out.weighed, (sin, cos, place.x, place.y), into);
+                out.count(&mut lot, most, &mut each);
             }
         }
+        each(lot, out);
     }
 }
 
-struct Sampling<'a, I> {
+/// Samples patch by patch.
+struct Sampling<'a, I, F> {
     world: &'a World,
     moment: &'a Moment,
     spots: I,
     origin: DVec2,
+    most: usize,
     out: &'a mut Roots,
+    each: F,
 }
 
-impl<I: Iterator<Item = Spot>> pulp::NullaryFnOnce for Sampling<'_, I> {
+impl<I: Iterator<Item = Spot>, F: FnMut(Range<usize>, &Roots)> pulp::NullaryFnOnce for Sampling<'_, I, F> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self { world, moment, spots, origin, out } = self;
+        let Self { world, moment, spots, origin, most, out, mut each } = self;
         let slots = world.info().slots;
         // Copies, so that nothing written can be taken for them.
         let (place, velocity) = (moment.place, moment.velocity);
+        let mut lot = 0..0;
         for spot in spots {
             let slot = moment.slot + world.tables.instance_phases[spot.instance as usize];
             let slot = if slot < slots { slot } else { slot - slots };
             sample_patch(world, slot as usize, [&place, &velocity], spot, origin, out);
+            out.count(&mut lot, most, &mut each);
         }
+        each(lot, out);
     }
 }
 
@@ -156,18 +200,24 @@ fn sample_patch(world: &World, slot: usize, weights: [&[f32; 4]; 2], spot: Spot,
     let run = world.rows.runs[slot * tables.kinds() + tables.instance_kinds[instance] as usize];
     let (live, first) = (usize::from(run.live), out.len);
     let read = live.next_multiple_of(WIDTH);
-    if out.arrays[0].len() < first + read {
-        // The same patch more than once, where a world repeats.
-        out.grow((first + read) * 2);
-    }
+    // The same patch may be there more than once, where a world repeats.
+    out.room(first + read);
     out.len += live;
     let [sin, cos] = world.rows.turns[instance];
     let place = (tables.place(instance) + spot.shift - origin).as_vec2();
     let (x, z) = world.rows.knots(tables, slot, &run);
-    let [ox, oz, ovx, ovz] = &mut out.arrays;
-    let out = [ox, oz, ovx, ovz].map(|array| array[first..first + read].as_chunks_mut::<WIDTH>().0);
+    let out = eights(&mut out.arrays, first..first + read);
     transform(x, z, weights, (sin, cos, place.x, place.y), out);
 }
+
+/// A part of all arrays, eight numbers at a time.
+#[inline(always)]
+fn eights([x, z, vx, vz]: &mut [Vec<f32>; 4], part: Range<usize>) -> [&mut [Eight]; 4] {
+    let (x, z) = (x[part.clone()].as_chunks_mut().0, z[part.clone()].as_chunks_mut().0);
+    [x, z, vx[part.clone()].as_chunks_mut().0, vz[part].as_chunks_mut().0]
+}
+
+// Loops, not closures: these would not always be inlined into what is compiled for wide instructions.
 
 /// Weighs the control points of blocks of eight lanes, turns and moves them: places, then velocities.
 #[inline(always)]
@@ -175,21 +225,19 @@ fn transform(
     x: Knots,
     z: Knots,
     [place, velocity]: [&[f32; 4]; 2],
-    (sin, cos, right, up): (f32, f32, f32, f32),
+    by: (f32, f32, f32, f32),
     [ox, oz, ovx, ovz]: [&mut [Eight]; 4],
 ) {
     let n = ox.len();
-    let ([x0, x1, x2, x3], [z0, z1, z2, z3]) = (x.map(|s| &s[..n]), z.map(|s| &s[..n]));
+    let ([x0, x1, x2, x3], [z0, z1, z2, z3]) = (x, z);
+    let ((x0, x1, x2, x3), (z0, z1, z2, z3)) =
+        ((&x0[..n], &x1[..n], &x2[..n], &x3[..n]), (&z0[..n], &z1[..n], &z2[..n], &z3[..n]));
     let (oz, ovx, ovz) = (&mut oz[..n], &mut ovx[..n], &mut ovz[..n]);
     for b in 0..n {
-        let x = [lift(x0[b]), lift(x1[b]), lift(x2[b]), lift(x3[b])];
-        let z = [lift(z0[b]), lift(z1[b]), lift(z2[b]), lift(z3[b])];
-        let (px, pz) = (weigh(&x, place), weigh(&z, place));
-        let (vx, vz) = (weigh(&x, velocity), weigh(&z, velocity));
-        ox[b] = std::array::from_fn(|i| cos * px[i] - sin * pz[i] + right);
-        oz[b] = std::array::from_fn(|i| sin * px[i] + cos * pz[i] + up);
-        ovx[b] = std::array::from_fn(|i| cos * vx[i] - sin * vz[i]);
-        ovz[b] = std::array::from_fn(|i| sin * vx[i] + cos * vz[i]);
+        let x = [lift(&x0[b]), lift(&x1[b]), lift(&x2[b]), lift(&x3[b])];
+        let z = [lift(&z0[b]), lift(&z1[b]), lift(&z2[b]), lift(&z3[b])];
+        let weighed = [weigh(&x, place), weigh(&z, place), weigh(&x, velocity), weigh(&z, velocity)];
+        [ox[b], oz[b], ovx[b], ovz[b]] = turn(&weighed, by);
     }
 }
 
@@ -197,35 +245,49 @@ fn transform(
 #[inline(always)]
 fn weigh_all(x: Knots, z: Knots, [place, velocity]: [&[f32; 4]; 2], out: &mut [[Eight; 4]]) {
     for (b, out) in out.iter_mut().enumerate() {
-        let x = [lift(x[0][b]), lift(x[1][b]), lift(x[2][b]), lift(x[3][b])];
-        let z = [lift(z[0][b]), lift(z[1][b]), lift(z[2][b]), lift(z[3][b])];
+        let x = [lift(&x[0][b]), lift(&x[1][b]), lift(&x[2][b]), lift(&x[3][b])];
+        let z = [lift(&z[0][b]), lift(&z[1][b]), lift(&z[2][b]), lift(&z[3][b])];
         *out = [weigh(&x, place), weigh(&z, place), weigh(&x, velocity), weigh(&z, velocity)];
     }
 }
 
-/// Turns and moves blocks of eight lanes that have been weighed. The same sums as in [`transform`].
+/// Turns and moves blocks of eight lanes that have been weighed.
 #[inline(always)]
-fn turn_all(
-    weighed: &[[Eight; 4]],
-    (sin, cos, right, up): (f32, f32, f32, f32),
-    [ox, oz, ovx, ovz]: [&mut [Eight]; 4],
-) {
+fn turn_all(weighed: &[[Eight; 4]], by: (f32, f32, f32, f32), [ox, oz, ovx, ovz]: [&mut [Eight]; 4]) {
     let n = weighed.len();
     let (ox, oz, ovx, ovz) = (&mut ox[..n], &mut oz[..n], &mut ovx[..n], &mut ovz[..n]);
-    for (b, [px, pz, vx, vz]) in weighed.iter().enumerate() {
-        ox[b] = std::array::from_fn(|i| cos * px[i] - sin * pz[i] + right);
-        oz[b] = std::array::from_fn(|i| sin * px[i] + cos * pz[i] + up);
-        ovx[b] = std::array::from_fn(|i| cos * vx[i] - sin * vz[i]);
-        ovz[b] = std::array::from_fn(|i| sin * vx[i] + cos * vz[i]);
+    for b in 0..n {
+        [ox[b], oz[b], ovx[b], ovz[b]] = turn(&weighed[b], by);
     }
 }
 
+/// Turns eight lanes by a sine and cosine, and moves them to the right and up.
 #[inline(always)]
-fn lift(numbers: [i16; WIDTH]) -> Eight {
-    numbers.map(f32::from)
+fn turn([px, pz, vx, vz]: &[Eight; 4], (sin, cos, right, up): (f32, f32, f32, f32)) -> [Eight; 4] {
+    let mut turned = [[0.0; WIDTH]; 4];
+    for i in 0..WIDTH {
+        turned[0][i] = cos * px[i] - sin * pz[i] + right;
+        turned[1][i] = sin * px[i] + cos * pz[i] + up;
+        turned[2][i] = cos * vx[i] - sin * vz[i];
+        turned[3][i] = sin * vx[i] + cos * vz[i];
+    }
+    turned
+}
+
+#[inline(always)]
+fn lift(numbers: &[i16; WIDTH]) -> Eight {
+    let mut lifted = [0.0; WIDTH];
+    for i in 0..WIDTH {
+        lifted[i] = numbers[i].into();
+    }
+    lifted
 }
 
 #[inline(always)]
 fn weigh(rows: &[Eight; 4], w: &[f32; 4]) -> Eight {
-    std::array::from_fn(|i| rows[0][i] * w[0] + rows[1][i] * w[1] + rows[2][i] * w[2] + rows[3][i] * w[3])
+    let mut sum = [0.0; WIDTH];
+    for i in 0..WIDTH {
+        sum[i] = rows[0][i] * w[0] + rows[1][i] * w[1] + rows[2][i] * w[2] + rows[3][i] * w[3];
+    }
+    sum
 }
