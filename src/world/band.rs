@@ -20,44 +20,57 @@ pub(super) fn solve(rows: &mut [Row], x: &mut [f64]) {
 /// Leaves L below the diagonal and 1 / D on it.
 fn factor(rows: &mut [Row]) {
     for r in 0..rows.len() {
-        let reach = r.min(WIDTH);
-        let mut row = rows[r];
-        let mut scaled = [0.0; WIDTH + 1];
-        for k in (1..=reach).rev() {
-            let above = &rows[r - k];
-            let mut sum = row[k];
-            for d in k + 1..=reach {
-                sum -= scaled[d] * above[d - k];
+        let (above, row) = rows.split_at_mut(r);
+        match above.last_chunk() {
+            Some(above) => factor_row(above, &mut row[0], WIDTH),
+            None => {
+                let mut few = [Row::default(); WIDTH];
+                few[WIDTH - r..].copy_from_slice(above);
+                factor_row(&few, &mut row[0], r);
             }
-            scaled[k] = sum;
         }
-        for k in 1..=reach {
-            let unit = scaled[k] * rows[r - k][0];
-            row[0] -= scaled[k] * unit;
-            row[k] = unit;
-        }
-        row[0] = 1.0 / row[0];
-        rows[r] = row;
     }
 }
 
-fn forward(rows: &[Row], x: &mut [f64]) {
-    for r in 0..rows.len() {
-        let mut sum = x[r];
-        for k in 1..=r.min(WIDTH) {
-            sum -= rows[r][k] * x[r - k];
+/// The factors of a row, of whose predecessors the last `reach` count.
+#[inline(always)]
+fn factor_row(above: &[Row; WIDTH], row: &mut Row, reach: usize) {
+    let mut scaled = Row::default();
+    for k in (1..=reach).rev() {
+        let mut sum = row[k];
+        for d in k + 1..=reach {
+            sum -= scaled[d] * above[WIDTH - k][d - k];
         }
-        x[r] = sum;
+        scaled[k] = sum;
+    }
+    for k in 1..=reach {
+        let unit = scaled[k] * above[WIDTH - k][0];
+        row[0] -= scaled[k] * unit;
+        row[k] = unit;
+    }
+    row[0] = 1.0 / row[0];
+}
+
+fn forward(rows: &[Row], x: &mut [f64]) {
+    for (r, row) in rows.iter().enumerate() {
+        let (above, own) = x.split_at_mut(r);
+        let mut sum = own[0];
+        match above.last_chunk::<WIDTH>() {
+            Some(above) => (1..=WIDTH).for_each(|k| sum -= row[k] * above[WIDTH - k]),
+            None => (1..=r).for_each(|k| sum -= row[k] * above[r - k]),
+        }
+        own[0] = sum;
     }
 }
 
 fn backward(rows: &[Row], x: &mut [f64]) {
     for r in (0..rows.len()).rev() {
-        let mut sum = x[r];
-        for k in 1..=(rows.len() - 1 - r).min(WIDTH) {
-            sum -= rows[r + k][k] * x[r + k];
+        let (own, below) = x[r..].split_at_mut(1);
+        let below_rows = &rows[r + 1..];
+        match (below.first_chunk::<WIDTH>(), below_rows.first_chunk::<WIDTH>()) {
+            (Some(below), Some(rows)) => (1..=WIDTH).for_each(|k| own[0] -= rows[k - 1][k] * below[k - 1]),
+            _ => (1..=below.len()).for_each(|k| own[0] -= below_rows[k - 1][k] * below[k - 1]),
         }
-        x[r] = sum;
     }
 }
 

@@ -127,6 +127,10 @@ impl Obstacle {
     #[inline]
     pub fn clear(&self, a: DVec2, b: DVec2, distance: f64) -> bool {
         let far = self.reach + distance;
+        // Most are so far away that this is plain from the middle alone.
+        if self.centre.distance_squared((a + b) * 0.5) > 2.0 * far * far + 0.5 * a.distance_squared(b) {
+            return true;
+        }
         let beyond = self.centre.distance_squared(nearest(self.centre, a, b)) > far * far;
         beyond || (!self.outward.is_empty() && (self.beside(a, b, distance) || self.segment_distance(a, b) > distance))
     }

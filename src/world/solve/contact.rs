@@ -27,35 +27,65 @@ pub(super) fn shifts(a: &Track, b: &Track, grid: i32) -> impl Iterator<Item = i3
     (low..=high).map(move |lap| lap * grid)
 }
 
-/// Overlap of `a` and `b` shifted in time: the knots of `a`, and what to subtract to get those of `b`.
-fn overlap(a: &Track, b: &Track, shift: i32) -> (std::ops::Range<usize>, isize) {
-    let begin = a.first.max(b.first + shift);
-    let end = a.end().min(b.end() + shift);
-    let range = (begin - a.first).max(0) as usize..(end - a.first).max(0) as usize;
-    (range, (b.first + shift - a.first) as isize)
+/// The knots that two tracks have at the same times, and the numbers of the first in either.
+struct Overlap<'a> {
+    a: &'a [DVec2],
+    b: &'a [DVec2],
+    begin: [usize; 2],
+}
+
+impl<'a> Overlap<'a> {
+    /// Of `a`, and `b` shifted in time.
+    fn new(a: &'a Track, b: &'a Track, shift: i32) -> Self {
+        let begin = a.first.max(b.first + shift);
+        let n = (a.end().min(b.end() + shift) - begin).max(0) as usize;
+        let [i, j] = [a.first, b.first + shift].map(|first| if n > 0 { (begin - first) as usize } else { 0 });
+        Self { a: &a.knots[i..i + n], b: &b.knots[j..j + n], begin: [i, j] }
+    }
+
+    fn len(&self) -> usize {
+        self.a.len()
+    }
+
+    /// From `b` to `a`.
+    fn apart(&self, k: usize) -> DVec2 {
+        self.a[k] - self.b[k]
+    }
+
+    /// The first from `k` on where they are as near as `square` says, or all.
+    fn near(&self, mut k: usize, square: f64) -> usize {
+        // Four at a time without a branch: hardly any are near.
+        while let (Some(a), Some(b)) = (self.a[k..].first_chunk::<4>(), self.b[k..].first_chunk::<4>()) {
+            let mut near = false;
+            for i in 0..4 {
+                near |= (a[i] - b[i]).length_squared() <= square;
+            }
+            if near {
+                break;
+            }
+            k += 4;
+        }
+        while k < self.len() && self.apart(k).length_squared() > square {
+            k += 1;
+        }
+        k
+    }
 }
 
 /// Whether the bodies never touch: chords less how far curves leave them (exact bound of the curvature).
 pub(super) fn free(a: &Track, b: &Track, shift: i32, apart: f64) -> bool {
-    let (range, offset) = overlap(a, b, shift);
+    let both = Overlap::new(a, b, shift);
     let near = (apart + 0.1).powi(2) + 0.2;
-    let there = |k: usize| (k as isize - offset) as usize;
-    let apart_at = |k: usize| a.knots[k] - b.knots[there(k)];
-    for k in range.clone() {
-        let from = apart_at(k);
-        if from.length_squared() > near {
-            continue;
-        }
+    let mut k = both.near(0, near);
+    while k < both.len() {
         // Both segments at a near knot.
-        for s in [k.wrapping_sub(1), k] {
-            if s >= range.end || s + 1 >= range.end || s < range.start {
-                continue;
-            }
-            let (p, q) = (apart_at(s), apart_at(s + 1));
-            if chord(p, q).0 < apart + SLACK + relative_sag(a, s, b, there(s)) {
+        for s in k.saturating_sub(1)..(k + 1).min(both.len() - 1) {
+            let sag = relative_sag(a, both.begin[0] + s, b, both.begin[1] + s);
+            if chord(both.apart(s), both.apart(s + 1)).0 < apart + SLACK + sag {
                 return false;
             }
         }
+        k = both.near(k + 1, near);
     }
     true
 }
@@ -77,25 +107,26 @@ fn chord(p: DVec2, q: DVec2) -> (f64, DVec2) {
 /// What keeps `a` away from `b` shifted in time. For every time they come near one direction is fixed, that of their
 /// closest approach: along it the two are held as far apart as passing each other on straight lines needs.
 pub(super) fn pushes(a: &Track, b: &Track, shift: i32, apart: f64, found: &mut Vec<Push>) {
-    let (range, offset) = overlap(a, b, shift);
-    let apart_at = |k: usize| a.knots[k] - b.knots[(k as isize - offset) as usize];
+    let both = Overlap::new(a, b, shift);
     let near = apart * apart + 0.2;
-    let mut k = range.start;
-    while k < range.end {
-        if apart_at(k).length_squared() > near {
-            k += 1;
-            continue;
-        }
-        let begin = k;
-        while k < range.end && apart_at(k).length_squared() <= near {
-            k += 1;
-        }
-        meet(begin.max(range.start + 1) - 1..(k + 1).min(range.end), &apart_at, apart, found);
+    let mut begin = both.near(0, near);
+    while begin < both.len() {
+        let is_near = |&k: &usize| both.apart(k).length_squared() <= near;
+        let end = begin + (begin..both.len()).take_while(is_near).count();
+        let knots = begin.saturating_sub(1)..(end + 1).min(both.len());
+        meet(knots, &|k| both.apart(k), both.begin[0], apart, found);
+        begin = both.near(end, near);
     }
 }
 
-/// Rows for the knots of one encounter.
-fn meet(knots: std::ops::Range<usize>, apart_at: &impl Fn(usize) -> DVec2, apart: f64, found: &mut Vec<Push>) {
+/// Rows for the knots of one encounter, the first of which has the number `first` in its track.
+fn meet(
+    knots: std::ops::Range<usize>,
+    apart_at: &impl Fn(usize) -> DVec2,
+    first: usize,
+    apart: f64,
+    found: &mut Vec<Push>,
+) {
     let mut closest = (f64::INFINITY, DVec2::X, DVec2::X);
     for k in knots.start..knots.end - 1 {
         let (p, q) = (apart_at(k), apart_at(k + 1));
@@ -117,7 +148,7 @@ fn meet(knots: std::ops::Range<usize>, apart_at: &impl Fn(usize) -> DVec2, apart
         if aside < apart {
             let gap = (apart * apart - aside * aside).sqrt() - r.dot(normal);
             if gap > 0.0 {
-                found.push(Push { knot: k, normal, gap });
+                found.push(Push { knot: first + k, normal, gap });
             }
         }
     }

@@ -90,11 +90,11 @@ impl Ground {
     }
 
     fn inside(&self, track: &Track, k: usize) -> bool {
-        self.borders.iter().enumerate().all(|(edge, border)| {
-            self.at_crossing(track, edge, k)
-                || (track.knots[k] - border.begin).dot(border.inward) - track.bend(k).length() / 6.0
-                    >= self.radius + SLACK
-        })
+        let (place, room) = (track.knots[k], self.radius + SLACK + track.bend(k).length() / 6.0);
+        self.borders
+            .iter()
+            .enumerate()
+            .all(|(edge, border)| (place - border.begin).dot(border.inward) >= room || self.at_crossing(track, edge, k))
     }
 
     /// Whether knot `k` is where the body may reach over `edge`.
