@@ -94,29 +94,6 @@ fn all_patches_together_play_what_each_does() {
 }
 
 #[test]
-fn lots_follow_each_other_and_are_the_whole() {
-    let shared = Plan { versions: 1, patterns: 1, ..scenes::city(40, true, 1).unwrap() };
-    for (plan, kinds) in [(shared, "shared"), (scenes::city(40, true, 1).unwrap(), "many")] {
-        let (_, world) = baked(&plan);
-        let (moment, origin) = (world.moment(3.3), DVec2::new(17.3, -250.0));
-        let (mut all, mut lot) = (Roots::default(), Roots::default());
-        world.roots(&moment, origin, &mut all);
-        let (mut patches, mut lots, mut found) = (0, 0, [const { Vec::new() }; 4]);
-        world.roots_in_lots(&moment, origin, &mut lot, |of, roots| {
-            assert_eq!(of.start, patches, "{kinds}");
-            (patches, lots) = (of.end, lots + 1);
-            let people = world.order().skip(of.start).take(of.len()).map(|i| world.walkers_of(i, &moment).len());
-            assert_eq!(people.sum::<usize>(), roots.len(), "{kinds}");
-            let arrays = [roots.x(), roots.z(), roots.vx(), roots.vz()];
-            found.iter_mut().zip(arrays).for_each(|(found, array)| found.extend_from_slice(array));
-        });
-        assert!(patches == world.instances() && lots > 1, "{kinds}: {lots} lots of {patches} patches");
-        // To the bit.
-        assert!(found == [all.x(), all.z(), all.vx(), all.vz()], "{kinds}");
-    }
-}
-
-#[test]
 fn who_is_near_is_found_in_any_copy() {
     let (_, world) = baked(&small_city());
     let size = 16.0 * 8.0;

@@ -176,11 +176,10 @@ def stage(seeds: int, say: Say) -> list[Row]:
     for name, kinds, unique in (("1,000 shared kinds", 1000, False), ("unique patches", 1000, True)):
         runs = [measure_replay(1_000_000, kinds, unique) for _ in range(max(1, seeds // 2))]
         people, _, memory = runs[0][:3]
-        early, late, whole, single = (median(run[i] for run in runs) for i in (3, 4, 5, 6))
+        early, late, single = (median(run[i] for run in runs) for i in (3, 4, 5))
         say(f"stage: {name}: {early / 1e6:.0f} M root samples/s")
         rows.append(row("stage", f"replay-roots, {name}: at 1 s", early / 1e6, "M/s", 1.5, steering))
         rows.append(row("stage", f"replay-roots, {name}: at 1 h", late / 1e6, "M/s", 1.5, steering))
-        rows.append(row("stage", f"replay-roots, {name}: all in one array", whole / 1e6, "M/s", 1.5, steering))
         for other, rate in others.items():
             source = f"{other} on the same street, here and now: agent-steps"
             rows.append(row("stage", f"replay-roots, {name}: beside {other}", early / 1e6, "M/s", rate / 1e6, source))

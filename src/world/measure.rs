@@ -115,12 +115,10 @@ pub struct Replay {
     pub people: usize,
     /// Bytes of the world in memory.
     pub bytes: usize,
-    /// Places with velocities per second, around 1 s, handed out in lots; the median of many frames.
+    /// Places with velocities per second, around 1 s; the median of many frames.
     pub early: f64,
     /// The same around 1 h.
     pub late: f64,
-    /// The same around 1 s with everybody of a frame in one array.
-    pub whole: f64,
     /// Microseconds for all people of one patch at a random time: the median.
     pub single_micros: f64,
 }
@@ -133,26 +131,18 @@ pub struct Replay {
 pub fn measure_replay(people: usize, kinds: u64, unique: bool) -> Result<Replay> {
     let world = dense_world(people, kinds, unique)?;
     let mut roots = Roots::default();
-    let mut rate = |from: f64, whole: bool| {
+    let mut rate = |from: f64| {
         let mut frames: Vec<f64> = (0..60)
             .map(|frame| {
-                let (begin, mut people) = (Instant::now(), 0);
-                let moment = world.moment(from + f64::from(frame) * 0.177);
-                if whole {
-                    world.roots(&moment, DVec2::ZERO, &mut roots);
-                    people = roots.len();
-                } else {
-                    world.roots_in_lots(&moment, DVec2::ZERO, &mut roots, |_, lot| {
-                        people += std::hint::black_box(lot).len();
-                    });
-                }
-                people as f64 / begin.elapsed().as_secs_f64()
+                let begin = Instant::now();
+                world.roots(&world.moment(from + f64::from(frame) * 0.177), DVec2::ZERO, &mut roots);
+                roots.len() as f64 / begin.elapsed().as_secs_f64()
             })
             .collect();
         frames.sort_by(f64::total_cmp);
         frames[frames.len() / 2]
     };
-    let (early, late, whole) = (rate(1.0, false), rate(3600.0, false), rate(1.0, true));
+    let (early, late) = (rate(1.0), rate(3600.0));
     let slots = world.info().slots;
     let walkers = (0..slots).map(|s| world.walkers(&world.moment(f64::from(s) * 0.2 + 0.1))).sum::<usize>();
     Ok(Replay {
@@ -161,7 +151,6 @@ pub fn measure_replay(people: usize, kinds: u64, unique: bool) -> Result<Replay>
         bytes: world.bytes(),
         early,
         late,
-        whole,
         single_micros: single_micros(&world),
     })
 }

@@ -160,19 +160,7 @@ impl World {
     /// Where everybody who walks is at `moment`, patch by patch in [order](Self::order), metres from `origin`. O(people); allocates
     /// only where `out` has never been as large.
     pub fn roots(&self, moment: &Moment, origin: DVec2, out: &mut Roots) {
-        sample::sample_lots(self, moment, origin, usize::MAX, out, |_, _| ());
-    }
-
-    /// The same a few thousand people at a time, which stay in the cache until `each` has them: which patches they are of (counted
-    /// in [order](Self::order)), and their roots. `lot` is where they are put, and may be used again.
-    pub fn roots_in_lots(
-        &self,
-        moment: &Moment,
-        origin: DVec2,
-        lot: &mut Roots,
-        each: impl FnMut(std::ops::Range<usize>, &Roots),
-    ) {
-        sample::sample_lots(self, moment, origin, sample::LOT, lot, each);
+        sample::sample_all(self, moment, origin, out);
     }
 
     /// The same for some patches only.

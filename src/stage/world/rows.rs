@@ -49,21 +49,26 @@ pub(super) struct ByKind {
     /// End of every kind's patches in `instances`.
     ends: Vec<u32>,
     pub instances: Vec<u32>,
+    /// How these are turned, as in [`Index::turns`], and their places in the tables' units: side by side, as they are played.
+    frames: Vec<([f32; 2], [i32; 2])>,
 }
 
 impl ByKind {
-    fn new(kinds: usize, of: &[u32]) -> Self {
+    fn new(tables: &Tables, turns: &[[f32; 2]]) -> Self {
+        let (kinds, of) = (tables.kinds(), &tables.instance_kinds);
         let mut instances: Vec<u32> = (0..of.len() as u32).collect();
         instances.sort_by_key(|&instance| of[instance as usize]);
         let end = |kind| instances.partition_point(|&instance| of[instance as usize] <= kind) as u32;
-        Self { ends: (0..kinds as u32).map(end).collect(), instances }
+        let places = tables.instance_places.as_chunks().0;
+        let frames = instances.iter().map(|&i| (turns[i as usize], places[i as usize])).collect();
+        Self { ends: (0..kinds as u32).map(end).collect(), instances, frames }
     }
 
-    /// The patches of a kind.
+    /// How the patches of a kind lie.
     #[inline(always)]
-    pub fn of(&self, kind: usize) -> &[u32] {
+    pub fn of(&self, kind: usize) -> &[([f32; 2], [i32; 2])] {
         let begin = if kind == 0 { 0 } else { self.ends[kind - 1] };
-        &self.instances[begin as usize..self.ends[kind] as usize]
+        &self.frames[begin as usize..self.ends[kind] as usize]
     }
 }
 
@@ -94,10 +99,9 @@ impl Index {
         expect(u32::try_from(tables.rows.len()).is_ok(), "rows", || "more than 4 billion numbers".into())?;
         let runs = vec![Run::default(); slots * kinds];
         let turn = |t: &f32| [t.sin(), t.cos()].map(|part| part * tables.info.metres_per_unit);
-        let turns = tables.instance_turns.iter().map(turn).collect();
+        let turns: Vec<[f32; 2]> = tables.instance_turns.iter().map(turn).collect();
         let together = tables.instance_phases.iter().all(|&phase| phase == 0);
-        let shared = (together && tables.instance_kinds.len() >= SHARED * kinds)
-            .then(|| ByKind::new(kinds, &tables.instance_kinds));
+        let shared = (together && tables.instance_kinds.len() >= SHARED * kinds).then(|| ByKind::new(tables, &turns));
         let mut index = Self { runs, turns, slots: Vec::new(), pages: Vec::new(), people: Vec::new(), shared };
         let stays: Vec<(i64, i64)> = (0..kinds).flat_map(|kind| stays(tables, kind)).collect();
         let mut begin = 0;
@@ -208,7 +212,7 @@ impl Index {
     }
 
     pub fn bytes(&self) -> usize {
-        let shared = self.shared.as_ref().map_or(0, |shared| shared.ends.len() + shared.instances.len());
+        let shared = self.shared.as_ref().map_or(0, |shared| shared.ends.len() + 5 * shared.instances.len());
         let four = self.people.len() + shared;
         8 * (self.runs.len() + self.turns.len()) + 16 * self.slots.len() + 24 * self.pages.len() + 4 * four
     }

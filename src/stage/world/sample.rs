@@ -10,14 +10,10 @@ use glam::DVec2;
 
 use super::place::Spot;
 use super::rows::{ByKind, Knots, WIDTH};
+use super::tables::in_metres;
 use super::{Moment, World};
 
 type Eight = [f32; WIDTH];
-
-/// People of a lot: their places and velocities fill half of a small cache.
-pub(super) const LOT: usize = 1024;
-/// People of a patch, about: so many more there may be in a lot.
-const MARGIN: usize = 64;
 
 /// Places and velocities, one array for each coordinate. Reused from frame to frame.
 #[derive(Clone, Debug, Default)]
@@ -59,24 +55,6 @@ impl Roots {
         &self.arrays[3][..self.len]
     }
 
-    /// Makes sure that there is room for so many.
-    #[inline(always)]
-    fn room(&mut self, people: usize) {
-        if self.arrays[0].len() < people {
-            self.grow(people * 2);
-        }
-    }
-
-    /// Counts one more patch of a lot, which is handed out when there are enough people in it.
-    #[inline(always)]
-    fn count(&mut self, lot: &mut Range<usize>, most: usize, each: &mut impl FnMut(Range<usize>, &Roots)) {
-        lot.end += 1;
-        if self.len >= most {
-            each(lot.clone(), self);
-            (lot.start, self.len) = (lot.end, 0);
-        }
-    }
-
     #[cold]
     #[inline(never)]
     fn grow(&mut self, people: usize) {
@@ -96,50 +74,39 @@ pub(super) fn sample(
 ) {
     out.grow(world.walkers(moment) + WIDTH);
     out.len = 0;
-    pulp::Arch::new().dispatch(Sampling { world, moment, spots, origin, most: usize::MAX, out, each: |_, _: &_| () });
+    pulp::Arch::new().dispatch(Sampling { world, moment, spots, origin, out });
 }
 
-/// Samples the walkers of all patches, `most` (or a few more) at a time, and hands out each lot with the patches it is of.
-pub(super) fn sample_lots(
-    world: &World,
-    moment: &Moment,
-    origin: DVec2,
-    most: usize,
-    out: &mut Roots,
-    each: impl FnMut(Range<usize>, &Roots),
-) {
-    out.grow(world.walkers(moment).min(most.saturating_add(MARGIN)) + WIDTH);
+/// Samples the walkers of all patches.
+pub(super) fn sample_all(world: &World, moment: &Moment, origin: DVec2, out: &mut Roots) {
+    let Some(shared) = &world.rows.shared else {
+        let all = 0..world.instances() as u32;
+        return sample(world, moment, all.map(|instance| Spot { instance, shift: DVec2::ZERO }), origin, out);
+    };
+    out.grow(world.walkers(moment) + WIDTH);
     out.len = 0;
-    let simd = pulp::Arch::new();
-    if let Some(shared) = &world.rows.shared {
-        return simd.dispatch(SamplingKinds { world, shared, moment, origin, most, out, each });
-    }
-    let spots = (0..world.instances() as u32).map(|instance| Spot { instance, shift: DVec2::ZERO });
-    simd.dispatch(Sampling { world, moment, spots, origin, most, out, each });
+    pulp::Arch::new().dispatch(SamplingKinds { world, shared, moment, origin, out });
 }
 
 /// Weighs what is present of every kind, then turns and moves it for every patch of the kind.
-struct SamplingKinds<'a, F> {
+struct SamplingKinds<'a> {
     world: &'a World,
     shared: &'a ByKind,
     moment: &'a Moment,
     origin: DVec2,
-    most: usize,
     out: &'a mut Roots,
-    each: F,
 }
 
-impl<F: FnMut(Range<usize>, &Roots)> pulp::NullaryFnOnce for SamplingKinds<'_, F> {
+impl pulp::NullaryFnOnce for SamplingKinds<'_> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self { world, shared, moment, origin, most, out, mut each } = self;
+        let Self { world, shared, moment, origin, out } = self;
         let (tables, kinds) = (&world.tables, world.kinds());
         let (place, velocity) = (moment.place, moment.velocity);
         let slot = moment.slot as usize;
         let runs = &world.rows.runs[slot * kinds..(slot + 1) * kinds];
-        let mut lot = 0..0;
         for (kind, run) in runs.iter().enumerate() {
             let live = usize::from(run.live);
             let blocks = live.div_ceil(WIDTH);
@@ -147,50 +114,40 @@ impl<F: FnMut(Range<usize>, &Roots)> pulp::NullaryFnOnce for SamplingKinds<'_, F
             let weighed = &mut out.weighed;
             weighed.resize(blocks, [[0.0; WIDTH]; 4]);
             weigh_all(x, z, [&place, &velocity], weighed);
-            for &instance in shared.of(kind) {
-                let instance = instance as usize;
+            for &([sin, cos], place) in shared.of(kind) {
                 let (first, read) = (out.len, blocks * WIDTH);
-                out.room(first + read);
                 out.len += live;
-                let [sin, cos] = world.rows.turns[instance];
-                let place = (tables.place(instance) - origin).as_vec2();
+                let place = (in_metres(place) - origin).as_vec2();
                 let into = eights(&mut out.arrays, first..first + read);
                 turn_all(&out.weighed, (sin, cos, place.x, place.y), into);
-                out.count(&mut lot, most, &mut each);
             }
         }
-        each(lot, out);
     }
 }
 
 /// Samples patch by patch.
-struct Sampling<'a, I, F> {
+struct Sampling<'a, I> {
     world: &'a World,
     moment: &'a Moment,
     spots: I,
     origin: DVec2,
-    most: usize,
     out: &'a mut Roots,
-    each: F,
 }
 
-impl<I: Iterator<Item = Spot>, F: FnMut(Range<usize>, &Roots)> pulp::NullaryFnOnce for Sampling<'_, I, F> {
+impl<I: Iterator<Item = Spot>> pulp::NullaryFnOnce for Sampling<'_, I> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Self { world, moment, spots, origin, most, out, mut each } = self;
+        let Self { world, moment, spots, origin, out } = self;
         let slots = world.info().slots;
         // Copies, so that nothing written can be taken for them.
         let (place, velocity) = (moment.place, moment.velocity);
-        let mut lot = 0..0;
         for spot in spots {
             let slot = moment.slot + world.tables.instance_phases[spot.instance as usize];
             let slot = if slot < slots { slot } else { slot - slots };
             sample_patch(world, slot as usize, [&place, &velocity], spot, origin, out);
-            out.count(&mut lot, most, &mut each);
         }
-        each(lot, out);
     }
 }
 
@@ -200,8 +157,10 @@ fn sample_patch(world: &World, slot: usize, weights: [&[f32; 4]; 2], spot: Spot,
     let run = world.rows.runs[slot * tables.kinds() + tables.instance_kinds[instance] as usize];
     let (live, first) = (usize::from(run.live), out.len);
     let read = live.next_multiple_of(WIDTH);
-    // The same patch may be there more than once, where a world repeats.
-    out.room(first + read);
+    if out.arrays[0].len() < first + read {
+        // The same patch more than once, where a world repeats.
+        out.grow((first + read) * 2);
+    }
     out.len += live;
     let [sin, cos] = world.rows.turns[instance];
     let place = (tables.place(instance) + spot.shift - origin).as_vec2();

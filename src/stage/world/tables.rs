@@ -159,8 +159,7 @@ impl Tables {
 
     /// Where the origin of a patch is, metres.
     pub fn place(&self, instance: usize) -> DVec2 {
-        let at = &self.instance_places[2 * instance..2 * instance + 2];
-        DVec2::new(f64::from(at[0]), f64::from(at[1])) / UNITS_PER_METRE
+        in_metres([self.instance_places[2 * instance], self.instance_places[2 * instance + 1]])
     }
 
     /// Bytes of all arrays.
@@ -306,6 +305,12 @@ impl Tables {
         let stayers: u64 = self.instance_kinds.iter().map(|&k| self.kind(k as usize).stayers().len() as u64).sum();
         expect(total.max(stayers) < u64::from(u32::MAX), "instance_kinds", || "more than 4 billion people".into())
     }
+}
+
+/// A place of the tables, metres.
+#[inline(always)]
+pub(super) fn in_metres([x, z]: [i32; 2]) -> DVec2 {
+    DVec2::new(f64::from(x), f64::from(z)) / UNITS_PER_METRE
 }
 
 /// An error unless `ok`.
