@@ -64,8 +64,8 @@ const COMPACT: f32 = 4.0;
 /// Of so many gatherings that are worked out at one person per m^2, so many are made: those that sweep the least ground.
 const RIVALS: f32 = 18.0;
 const BEST: usize = 3;
-/// At twice the density it are two to the power of this as many.
-const RIVALRY: i32 = 5;
+/// Their number grows with this power of the density.
+const RIVALRY: i32 = 4;
 const MOST_RIVALS: usize = 200;
 /// The part of the people who then stand close together, up to 1.2 and from 2 people per m^2.
 const STANDERS: [f32; 2] = [0.3, 0.75];
@@ -530,16 +530,16 @@ impl<'a> Engine<'a> {
     fn seed(&mut self) {
         let boxes = self.crew.tracks.library.laden.contains(&true);
         let every = laden_every(self.crew.tracks.library);
-        let presses = is_dense(self.scene) && !self.crew.tracks.domain.cycle.loops();
+        let dense = is_dense(self.scene) && !self.crew.tracks.domain.cycle.loops();
         let (mut failures, mut round) = (0, 0);
         while self.people_left() > 0 && failures < SEED_PATIENCE && self.goes_on(Phase::Seed) {
             round += 1;
             let laden = boxes && self.people_left().is_multiple_of(every) && failures < LADEN_PATIENCE;
             let count = if laden { 1 } else { self.crew.batch.min(self.people_left()) };
-            let presses = presses && !laden && failures > WEDGE_AFTER && round % WEDGE_BUT > 0;
-            let made = if presses { self.wedge(count) } else { self.come_alone(count, laden, failures) };
+            let wedges = dense && !laden && failures > WEDGE_AFTER && round % WEDGE_BUT > 0;
+            let made = if wedges { self.wedge(count) } else { self.come_alone(count, laden, failures) };
             failures = match made {
-                true if presses => WEDGE_AFTER + 1,
+                true if wedges => WEDGE_AFTER + 1,
                 true => 0,
                 false => failures + count,
             };

@@ -24,13 +24,11 @@ const PLACES: usize = 20;
 /// Who stands close to others is tried so near first, and then so much farther each time, metres.
 const NEAREST: f32 = 0.4;
 const CLOSER: f32 = 0.05;
-/// Who steps aside tries to stand ever so much farther from where they stood, metres.
-const ASIDE: f32 = 0.02;
+/// Who steps aside tries so many places, each so much farther from where they stood than the one before, metres.
 const ASIDE_TRIES: usize = 40;
+const ASIDE: f32 = 0.02;
 /// Nobody stands where others ever come nearer, metres.
 const ELBOW_ROOM: f32 = 0.35;
-/// How much rather people begin with what takes less room: its square metres weigh so much more than the pull to be compact.
-const COMPACT_FIRST: f32 = 1.0;
 /// One of so many begins a group of their own.
 const APART: u32 = 40;
 /// Whoever stands stays within this, and whoever is farther from the first place roams, metres.
@@ -155,7 +153,7 @@ fn first_piece(draft: &Draft, role: u32, place: Vec2, rng: &mut ChaCha8Rng) -> O
     draft.view().is_free(&first).then_some(first)
 }
 
-/// Any single-person role without a box, the calmer the more often one of somebody who stands; or with a box, half of
+/// Any single-person role without a box, the calmer the more often one of somebody who stands, compact ones rather; or with a box, half of
 /// them roles that take it up, if there are such.
 fn first_role(library: &Library, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> u32 {
     let lifts = |m: &Move| library.roles[m.role as usize].rests[0].is_some() && library.laden[m.group as usize];
@@ -173,8 +171,7 @@ fn first_role(library: &Library, laden: bool, taste: Taste, rng: &mut ChaCha8Rng
     };
     let wanted = if wanted.is_empty() { moves(&|_| true) } else { wanted };
     let weight = |m: &&Move| {
-        library.preference.weight_of_kind(library.roles[m.role as usize].kind)
-            * (-COMPACT_FIRST * taste.compact * m.room).exp()
+        library.preference.weight_of_kind(library.roles[m.role as usize].kind) * (-taste.compact * m.room).exp()
     };
     wanted.choose_weighted(rng, weight).expect("some role").role
 }

@@ -72,3 +72,37 @@ impl<'a> Swept<'a> {
         cells
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::bridge::NO_INSTANCE;
+    use super::super::common::plain_set;
+    use super::super::domain::Domain;
+    use super::super::scene::Scene;
+    use super::*;
+    use crate::deform::Limits;
+    use crate::geom::Ground;
+
+    #[test]
+    fn who_walks_sweeps_more_than_who_stands_and_nothing_twice() {
+        let set = plain_set();
+        let library = Library::new(&set, Limits::default());
+        let domain = Domain::new(&Scene::demo()).unwrap();
+        let mut swept = Swept::of(&Tracks::new(&library, &domain));
+        let change = |name: &str, x: f32| {
+            let kind = set.kinds.iter().position(|k| k.name == name).unwrap();
+            let at = Ground::new(Vec2::new(x, 5.0), 0.0);
+            let piece = Piece::rigid(&library, &domain, library.first_role[kind], NO_INSTANCE, at, 100);
+            Change { version: 0, hidden: vec![], pieces: vec![piece], tracks: vec![] }
+        };
+        let (stands, walks) = (swept.newly(&change("idle-40", 5.0)), swept.newly(&change("cycle-1", 5.0)));
+        // At least a disc of 40 cm, and nobody is wider than a metre.
+        let area = |cells: &[usize]| cells.len() as f32 * CELL * CELL;
+        assert!((0.5..3.2).contains(&area(&stands)) && area(&walks) > area(&stands), "{}", area(&stands));
+        swept.take(&stands);
+        assert!(swept.newly(&change("idle-40", 5.0)).is_empty());
+        assert!(!swept.newly(&change("idle-40", 7.0)).is_empty());
+        // In the corner no cell lies outside.
+        assert!(swept.newly(&change("idle-40", 0.1)).iter().all(|&cell| cell < swept.cells.len()));
+    }
+}

@@ -78,3 +78,48 @@ fn passers(tracks: &Tracks, place: Vec2, near: &mut Vec<PieceId>) -> Option<Vec<
     let is_loose = |w: &Window| tracks.tracks[w.track][w.from..w.to].iter().all(|&id| tracks.is_loose(id));
     windows.iter().all(is_loose).then_some(windows)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::common::plain_set;
+    use super::super::crew::Crew;
+    use super::super::domain::Domain;
+    use super::super::library::Library;
+    use super::super::scene::Scene;
+    use super::super::seed::seed_person;
+    use super::*;
+    use crate::deform::Limits;
+    use crate::geom::Polygon;
+
+    #[test]
+    fn where_nobody_finds_room_others_make_it_and_live_on() {
+        let set = plain_set();
+        let library = Library::new(&set, Limits::default());
+        let region = Polygon::rectangle(Vec2::ZERO, Vec2::splat(3.5));
+        let domain = Domain::new(&Scene { region, ..Scene::demo() }).unwrap();
+        let mut crew = Crew::new(Tracks::new(&library, &domain), 12.0, 1);
+        let taste = Taste { calm: 0.3, compact: 0.0, expansions: 300 };
+        let stand = Taste { calm: 0.02, compact: 4.0, expansions: 200 };
+        let mut full = 0;
+        while full < 10 {
+            let made = crew.work(8, |_, draft, rng| seed_person(draft, false, taste, rng), |_, _| true);
+            full = if made.contains(&true) { 0 } else { full + 1 };
+        }
+        let (before, version) = (crew.tracks.tracks.len(), crew.tracks.version());
+        let mut made_way = false;
+        for _ in 0..100 {
+            crew.work(8, |_, draft, rng| wedge(draft, stand, taste, rng), |_, _| true);
+            made_way |= crew.tracks.changed_since(version)[..before].contains(&true);
+        }
+        let tracks = &crew.tracks;
+        assert!(made_way && tracks.tracks.len() > before, "{} of {before}", tracks.tracks.len());
+        for track in 0..tracks.tracks.len() {
+            assert!(tracks.begins_open(track) && tracks.ends_open(track));
+            for pair in tracks.tracks[track].windows(2) {
+                let (exit, entry) = (library.exit_of(tracks.piece(pair[0])), library.entry_of(tracks.piece(pair[1])));
+                assert!(exit.tick == entry.tick && exit.group == entry.group);
+                assert!(exit.at.position.distance(entry.at.position) < 1e-3);
+            }
+        }
+    }
+}
