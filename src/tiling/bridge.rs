@@ -43,6 +43,8 @@ pub(super) enum Goal {
 pub(super) struct Taste {
     /// Cost factor of standing and turning in place; below 1 people rather stand.
     pub calm: f32,
+    /// Cost per second and m^2 of standing with more room than the most compact way to stand takes.
+    pub compact: f32,
     /// Most states expanded.
     pub expansions: usize,
 }
@@ -378,7 +380,7 @@ fn step_cost(view: View, step: &Move, taste: Taste) -> f32 {
     let factor = if lifts {
         LIFT_WEIGHT
     } else if step.speed < STANDING_SPEED {
-        taste.calm
+        taste.calm + taste.compact * step.room
     } else {
         1.0 + ASKEW_WEIGHT * step.askew
     };

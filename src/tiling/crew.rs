@@ -9,6 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use super::draft::{Desk, Draft};
+use super::swept::Swept;
 use super::tracks::{Change, Tracks};
 
 /// Ground on which about one change at a time finds room, m^2.
@@ -54,14 +55,43 @@ impl<'a> Crew<'a> {
         propose: impl Fn(usize, &mut Draft, &mut ChaCha8Rng) -> Option<()> + Sync,
         mut wanted: impl FnMut(&Tracks, &Change) -> bool,
     ) -> Vec<bool> {
-        let found: Vec<Option<Change>> = {
-            let this = &*self;
-            let one = |i: usize| this.propose(i, &propose);
-            (0..count).into_par_iter().with_max_len(1).map(one).collect()
-        };
-        self.drawn += count as u64;
+        let found = self.find(count, propose);
         let mut made = |change: Change| wanted(&self.tracks, &change) && self.tracks.apply(change);
         found.into_iter().map(|change| change.is_some_and(&mut made)).collect()
+    }
+
+    /// The same, but no more than `most` are made: those first that newly sweep the least ground for the company they bring.
+    pub fn work_best(
+        &mut self,
+        (count, most): (usize, usize),
+        swept: &mut Swept,
+        propose: impl Fn(usize, &mut Draft, &mut ChaCha8Rng) -> Option<()> + Sync,
+        wanted: impl Fn(&Tracks, &Change) -> bool,
+    ) -> Vec<bool> {
+        let found = self.find(count, propose).into_iter().enumerate();
+        let mut found: Vec<(f32, usize, Change)> =
+            found.filter_map(|(i, change)| change.map(|change| (swept.price(&change), i, change))).collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (mut made, mut left) = (vec![false; count], most);
+        for (_, i, change) in found {
+            let cells = swept.newly(&change);
+            if left > 0 && wanted(&self.tracks, &change) && self.tracks.apply(change) {
+                swept.take(&cells);
+                (made[i], left) = (true, left - 1);
+            }
+        }
+        made
+    }
+
+    fn find(
+        &mut self,
+        count: usize,
+        propose: impl Fn(usize, &mut Draft, &mut ChaCha8Rng) -> Option<()> + Sync,
+    ) -> Vec<Option<Change>> {
+        let this = &*self;
+        let found = (0..count).into_par_iter().with_max_len(1).map(|i| this.propose(i, &propose)).collect();
+        self.drawn += count as u64;
+        found
     }
 
     /// Works one change out in as many ways as are worked out at once, and makes the first that is found.

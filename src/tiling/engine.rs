@@ -20,7 +20,7 @@ use super::gather::{Wish, gather};
 use super::hurdle::{hurdle, jumpers};
 use super::keyframe::keyframes;
 use super::library::Library;
-use super::mend::{dissolve, mend};
+use super::mend::{dissolve, mend, restand};
 use super::outcome::{Method, Options, Outcome, Phase, Progress, Status};
 use super::pace::Pace;
 use super::passage::Passages;
@@ -29,9 +29,11 @@ use super::rehearsal::Rehearsal;
 use super::seed::{seed_person, settle, stand_beside};
 use super::session::{Session, first_agenda, further_agenda};
 use super::source::let_in;
+use super::swept::Swept;
 use super::team::{line_up, team_of};
-use super::tracks::{Tracks, Window};
+use super::tracks::{Change, Tracks, Window};
 use super::wang::{Crosser, Gap, lead_across};
+use super::wedge::wedge;
 use super::{Scene, paper, wang};
 use crate::patch::PatchSet;
 use crate::{Error, Result};
@@ -56,12 +58,21 @@ const GATHER_EXPANSIONS: usize = 300;
 /// comes and goes needs the more room.
 const DENSE: f32 = 0.85;
 const DENSE_TOGETHER: f32 = 0.65;
+/// There people rather stand, and compactly.
+const DENSE_CALM: f32 = 0.25;
+const COMPACT: f32 = 4.0;
+/// Of so many gatherings that are worked out at one person per m^2, so many are made: those that sweep the least ground.
+const RIVALS: f32 = 18.0;
+const BEST: usize = 3;
+/// Their number grows with this power of the density.
+const RIVALRY: i32 = 4;
+const MOST_RIVALS: usize = 200;
 /// The part of the people who then stand close together, up to 1.2 and from 2 people per m^2.
 const STANDERS: [f32; 2] = [0.3, 0.75];
 const STAND_DENSITIES: [f32; 2] = [1.2, 2.0];
 /// Failed tries in a row after which nobody more stands close to others, and states expanded for each.
 const STAND_PATIENCE: usize = 400;
-const STAND: Taste = Taste { calm: 0.02, expansions: 200 };
+const STAND: Taste = Taste { calm: 0.02, compact: COMPACT, expansions: 200 };
 /// Where those to come would have to be together for more than this share of their time, no more are gathered.
 const HOPELESS: f32 = 0.7;
 /// States expanded for each step that it takes to the end of time.
@@ -71,6 +82,9 @@ const SEED_PATIENCE: usize = 4000;
 /// After so many of them searches take longer, up to so many times.
 const SEED_AGAIN: usize = 200;
 const SEED_EFFORT: usize = 6;
+/// After so many, where it is dense, others are asked to make room, all but one in so many times.
+const WEDGE_AFTER: usize = 60;
+const WEDGE_BUT: usize = 4;
 /// Every so many people one is wished for who begins with a box in the hands, for so many tries; the more, the more of
 /// that is wanted.
 const LADEN_EVERY: usize = 20;
@@ -242,7 +256,17 @@ pub(super) fn mend_laid<'a>(
 
 /// The denser the crowd, the more people rather stand than walk.
 fn calm(scene: &Scene) -> f32 {
-    (1.58 - density(scene)).clamp(0.1, 1.3)
+    if is_dense(scene) { DENSE_CALM } else { 1.58 - density(scene) }.min(1.3)
+}
+
+/// Whether there is so little room that it is shared out with care.
+fn is_dense(scene: &Scene) -> bool {
+    density(scene) > DENSE
+}
+
+/// How many gatherings vie for room.
+fn rivals(scene: &Scene) -> usize {
+    ((RIVALS * density(scene).powi(RIVALRY)) as usize).clamp(BEST, MOST_RIVALS)
 }
 
 /// People per m^2.
@@ -292,7 +316,11 @@ impl<'a> Engine<'a> {
             scene,
             passages,
             plan: Plan::new(library, passages, horizon, seed),
-            taste: Taste { calm: calm(scene), expansions: library.steps(horizon) * EXPANSIONS_PER_STEP },
+            taste: Taste {
+                calm: calm(scene),
+                compact: if is_dense(scene) { COMPACT } else { 0.0 },
+                expansions: library.steps(horizon) * EXPANSIONS_PER_STEP,
+            },
             crew,
             clock,
             most: scene.characters,
@@ -456,21 +484,26 @@ impl<'a> Engine<'a> {
             return;
         }
         let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
-        let least = if density(self.scene) > DENSE { DENSE_TOGETHER } else { 0.0 };
-        let mut failures = 0;
+        let dense = is_dense(self.scene);
+        let least = if dense { DENSE_TOGETHER } else { 0.0 };
+        let (mut swept, mut failures) = (Swept::of(&self.crew.tracks), 0);
         while self.crew.tracks.company() < wish && failures < GATHER_PATIENCE && self.goes_on(Phase::Seed) {
             let (left, tracks) = (self.people_left(), &self.crew.tracks);
             let need = wish.saturating_sub(tracks.company()) as f32 / (left * tracks.domain.horizon as usize) as f32;
             if left < 2 || need > HOPELESS {
                 break;
             }
-            let wishes: Vec<Wish> =
-                (0..self.crew.batch.min(left.div_ceil(2))).map(|_| self.plan.draw(need.max(least))).collect();
-            let made = self.crew.work(
-                wishes.len(),
-                |i, draft, rng| gather(draft, passages, wishes[i], taste, rng),
-                |tracks, change| tracks.tracks.len() + change.newcomers() <= most && tracks.company() < wish,
-            );
+            let count = if dense { rivals(self.scene) } else { self.crew.batch.min(left.div_ceil(2)) };
+            let wishes: Vec<Wish> = (0..count).map(|_| self.plan.draw(need.max(least))).collect();
+            let propose =
+                |i: usize, draft: &mut Draft, rng: &mut ChaCha8Rng| gather(draft, passages, wishes[i], taste, rng);
+            let wanted = |tracks: &Tracks, change: &Change| {
+                tracks.tracks.len() + change.newcomers() <= most && tracks.company() < wish
+            };
+            let made = match dense {
+                true => self.crew.work_best((count, BEST), &mut swept, propose, wanted),
+                false => self.crew.work(count, propose, wanted),
+            };
             self.plan.learn(&wishes, &made);
             failures = if made.contains(&true) { 0 } else { failures + made.len() };
         }
@@ -478,7 +511,7 @@ impl<'a> Engine<'a> {
 
     /// Where it is to be dense, adds people who stand close together, so that the others have room.
     fn stand(&mut self) {
-        if density(self.scene) <= DENSE || !self.scene.teams.is_empty() {
+        if !is_dense(self.scene) || !self.scene.teams.is_empty() {
             return;
         }
         let [sparse, full] = STAND_DENSITIES;
@@ -495,27 +528,40 @@ impl<'a> Engine<'a> {
 
     /// Adds people who come alone until there are as many as wished for.
     fn seed(&mut self) {
-        let most = self.most;
         let boxes = self.crew.tracks.library.laden.contains(&true);
         let every = laden_every(self.crew.tracks.library);
-        let mut failures = 0;
+        let dense = is_dense(self.scene) && !self.crew.tracks.domain.cycle.loops();
+        let (mut failures, mut round) = (0, 0);
         while self.people_left() > 0 && failures < SEED_PATIENCE && self.goes_on(Phase::Seed) {
+            round += 1;
             let laden = boxes && self.people_left().is_multiple_of(every) && failures < LADEN_PATIENCE;
             let count = if laden { 1 } else { self.crew.batch.min(self.people_left()) };
-            // Fewer patches go on with a box in the hands: the search needs longer.
-            let patience = (1 + failures / SEED_AGAIN).min(SEED_EFFORT);
-            let least = if laden { LADEN_EXPANSIONS } else { 0 };
-            let taste = Taste { expansions: (patience * self.taste.expansions).max(least), ..self.taste };
-            let made = self.crew.work(
-                count,
-                |_, draft, rng| seed_person(draft, laden, taste, rng),
-                |tracks, _| tracks.tracks.len() < most,
-            );
-            failures = if made.contains(&true) { 0 } else { failures + count };
+            let wedges = dense && !laden && failures > WEDGE_AFTER && round % WEDGE_BUT > 0;
+            let made = if wedges { self.wedge(count) } else { self.come_alone(count, laden, failures) };
+            failures = match made {
+                true if wedges => WEDGE_AFTER + 1,
+                true => 0,
+                false => failures + count,
+            };
             if failures > SEED_AGAIN {
                 self.crew.work(self.crew.batch, |_, draft, rng| settle(draft, STAND, rng), |_, _| true);
             }
         }
+    }
+
+    /// Tries to add some people who come alone after so many failures in a row; whether somebody found room.
+    fn come_alone(&mut self, count: usize, laden: bool, failures: usize) -> bool {
+        // Fewer patches go on with a box in the hands: the search needs longer.
+        let patience = (1 + failures / SEED_AGAIN).min(SEED_EFFORT);
+        let least = if laden { LADEN_EXPANSIONS } else { 0 };
+        let taste = Taste { expansions: (patience * self.taste.expansions).max(least), ..self.taste };
+        self.crew.work(count, |_, draft, rng| seed_person(draft, laden, taste, rng), |_, _| true).contains(&true)
+    }
+
+    /// Tries to add some people for whom others make room; whether somebody found it.
+    fn wedge(&mut self, count: usize) -> bool {
+        let taste = self.taste;
+        self.crew.work(count, |_, draft, rng| wedge(draft, STAND, taste, rng), |_, _| true).contains(&true)
     }
 
     /// Adds patches of several people until there is as much company as wished for: once through time from its
@@ -581,7 +627,9 @@ impl<'a> Engine<'a> {
             let gentle = round < GENTLE_ROUNDS;
             let propose = |i: usize, draft: &mut Draft, rng: &mut ChaCha8Rng| match gentle {
                 true => mend(draft, faults[i], taste, rng),
-                false => dissolve(draft, faults[i], taste, rng).or_else(|| mend(draft, faults[i], taste, rng)),
+                false => restand(draft, faults[i], STAND, rng)
+                    .or_else(|| dissolve(draft, faults[i], taste, rng))
+                    .or_else(|| mend(draft, faults[i], taste, rng)),
             };
             self.crew.work(faults.len(), propose, |_, _| true);
             rehearsal.repeat(&self.crew.tracks);

@@ -1,10 +1,12 @@
 //! The patch set made ready for planning: everything that depends on the kind alone is computed once here.
 
+use std::f32::consts::PI;
+
 use glam::Vec2;
 use rayon::prelude::*;
 
 use super::audition::plays_cleanly;
-use super::bridge::Port;
+use super::bridge::{Port, STANDING_SPEED};
 use super::footprint::{Footprint, Lifts, footprints, lying, reach};
 use super::piece::Piece;
 use super::prefer::{Preference, Ready};
@@ -107,6 +109,8 @@ pub(super) struct Move {
     pub speed: f32,
     /// How much of the way goes sideways or backwards, 0 to 1.
     pub askew: f32,
+    /// By how much the circle that it stays in is larger than that of the most compact way to stand, m^2.
+    pub room: f32,
 }
 
 /// One or two single-person roles that can be deformed together between two given ends.
@@ -190,10 +194,14 @@ impl<'a> Library<'a> {
         for (i, role) in roles.iter().enumerate().filter(|(_, r)| is_single(r)) {
             let way = role.path.points.windows(2).map(|w| w[0].distance(w[1])).sum::<f32>();
             let (speed, askew) = (way / role.ticks as f32 * crate::motion::FPS, askew(&role.path));
-            let step = |to, group| Move { role: i as u32, to, ticks: role.ticks, group, speed, askew };
+            let room = circle(role);
+            let step = |to, group| Move { role: i as u32, to, ticks: role.ticks, group, speed, askew, room };
             forward[role.entry_group as usize].push(step(role.exit, role.exit_group));
             backward[role.exit_group as usize].push(step(role.exit.inverse(), role.entry_group));
         }
+        let standing = forward.iter().flatten().filter(|m| m.speed < STANDING_SPEED);
+        let least = standing.map(|m| m.room).reduce(f32::min).unwrap_or_default();
+        forward.iter_mut().chain(&mut backward).flatten().for_each(|m| m.room -= least);
         let closings = closings(&roles, groups, |r| is_single(r) && !r.leaves_box() && r.leap.is_none());
         Self {
             set,
@@ -359,6 +367,14 @@ fn rests(kind: &PatchKind, role: u32) -> [Option<Rest>; 2] {
         })
     });
     [before, after]
+}
+
+/// Area of the circle around the middle of its path that a body stays in, m^2.
+fn circle(role: &Role) -> f32 {
+    let points = &role.path.points;
+    let middle = points.iter().sum::<Vec2>() / points.len() as f32;
+    let radius = points.iter().zip(&role.reach).map(|(p, reach)| p.distance(middle) + reach).fold(0.0, f32::max);
+    PI * radius * radius
 }
 
 /// The part of a path's length that leads away from where the body looks: 0 for a walk, 1 for steps sideways or back.

@@ -11,6 +11,7 @@ use super::draft::Draft;
 use super::faults::Fault;
 use super::occupancy::PieceId;
 use super::piece::Company;
+use super::seed::{is_free_to_stand, stand_aside};
 use super::tracks::{TrackId, Tracks, Window};
 use super::tryout::is_clean;
 
@@ -45,6 +46,21 @@ pub(super) fn dissolve(draft: &mut Draft, fault: Fault, taste: Taste, rng: &mut 
         let window = |track| tracks.index_in(track, instance).map(|from| Window { track, from, to: from + 1 });
         let windows = (0..tracks.tracks.len()).filter_map(window).collect();
         rebridge(draft, windows, 0..=attempt, taste, rng)
+    })
+}
+
+/// Lets one of the two people, if alone all the time, stand near where they began instead.
+pub(super) fn restand(draft: &mut Draft, fault: Fault, stand: Taste, rng: &mut ChaCha8Rng) -> Option<()> {
+    (0..TRIES).find_map(|_| {
+        let track = if rng.random_range(0..2) == 0 { fault.a } else { fault.b };
+        if !is_free_to_stand(draft.base, track) {
+            return None;
+        }
+        draft.restart();
+        draft.hide(Window { track, from: 0, to: draft.base.tracks[track].len() });
+        let pieces = stand_aside(draft, track, stand, rng)?;
+        draft.set_track(track, pieces);
+        is_clean(draft).then_some(())
     })
 }
 

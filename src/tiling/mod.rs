@@ -38,6 +38,7 @@ mod session;
 mod sketch;
 mod source;
 mod study;
+mod swept;
 mod team;
 mod torsos;
 mod tracks;
@@ -45,6 +46,7 @@ mod tryout;
 mod view;
 mod visit;
 mod wang;
+mod wedge;
 
 #[cfg(test)]
 #[path = "../../tests/common/mod.rs"]

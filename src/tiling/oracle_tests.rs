@@ -114,7 +114,7 @@ impl Case<'_> {
     /// is chance: it may be the one that leads nowhere, so the search is given a few chances.
     fn search(&self, goal: Goal, rng: &mut ChaCha8Rng) -> (Option<Vec<Piece>>, usize) {
         let view = View::new(self.library, self.domain, &self.occupancy);
-        let taste = Taste { calm: 1.0, expansions: 20_000 };
+        let taste = Taste { calm: 1.0, compact: 0.0, expansions: 20_000 };
         let mut tries = 0;
         let found =
             std::iter::repeat_with(|| Bridge::default().search(view, self.from, goal, Company::NONE, taste, rng));

@@ -24,6 +24,11 @@ const PLACES: usize = 20;
 /// Who stands close to others is tried so near first, and then so much farther each time, metres.
 const NEAREST: f32 = 0.4;
 const CLOSER: f32 = 0.05;
+/// Who steps aside tries so many places, each so much farther from where they stood than the one before, metres.
+const ASIDE_TRIES: usize = 40;
+const ASIDE: f32 = 0.02;
+/// Nobody stands where others ever come nearer, metres.
+const ELBOW_ROOM: f32 = 0.35;
 /// One of so many begins a group of their own.
 const APART: u32 = 40;
 /// Whoever stands stays within this, and whoever is farther from the first place roams, metres.
@@ -59,15 +64,33 @@ pub(super) fn settle(draft: &mut Draft, taste: Taste, rng: &mut ChaCha8Rng) -> O
     let pieces = &tracks.tracks[track];
     let here = tracks.piece(pieces[0]).entry().position;
     let roams = |&id: &PieceId| tracks.piece(id).entry().position.distance(here) > ROAM;
-    let alone = |&id: &PieceId| tracks.is_loose(id) && !tracks.piece(id).leaves_box();
-    let free = tracks.begins_open(track) && tracks.ends_open(track) && !is_laden(tracks, track);
-    if !free || !pieces.iter().all(alone) || !pieces.iter().any(roams) {
+    if !is_free_to_stand(tracks, track) || !pieces.iter().any(roams) {
         return None;
     }
     draft.hide(Window { track, from: 0, to: pieces.len() });
     let pieces = standing(draft, taste, rng)?;
     draft.set_track(track, pieces);
     is_clean(draft).then_some(())
+}
+
+/// The life of somebody who stands all the time, as near as there is room to where a person who is taken out began.
+pub(super) fn stand_aside(
+    draft: &mut Draft,
+    track: TrackId,
+    taste: Taste,
+    rng: &mut ChaCha8Rng,
+) -> Option<Vec<PieceId>> {
+    let here = draft.base.port(track, 0).at.position;
+    let aside = |k: usize| here + Vec2::from_angle(rng.random_range(-PI..PI)) * (k as f32 * ASIDE);
+    let places: Vec<Vec2> = (0..ASIDE_TRIES).map(aside).collect();
+    stand_at(draft, &places, taste, rng)
+}
+
+/// True if somebody who is there all the time is alone and has no boxes, and so may as well stand somewhere.
+pub(super) fn is_free_to_stand(tracks: &Tracks, track: TrackId) -> bool {
+    let alone = |&id: &PieceId| tracks.is_loose(id) && !tracks.piece(id).leaves_box();
+    let open = tracks.begins_open(track) && tracks.ends_open(track);
+    open && !is_laden(tracks, track) && tracks.tracks[track].iter().all(alone)
 }
 
 /// True if somebody begins with a box in the hands.
@@ -84,12 +107,16 @@ fn standing(draft: &mut Draft, taste: Taste, rng: &mut ChaCha8Rng) -> Option<Vec
         true => tracks.state_at(other, begin).position,
         false => anywhere(draft, rng),
     };
-    let role = first_role(tracks.library, false, taste, rng);
     let aside = Vec2::from_angle(rng.random_range(-PI..PI));
-    let first = (0..PLACES).find_map(|k| {
-        let place = near + aside * (NEAREST + k as f32 * CLOSER);
-        first_piece(draft, role, place, rng)
-    })?;
+    let places: Vec<Vec2> = (0..PLACES).map(|k| near + aside * (NEAREST + k as f32 * CLOSER)).collect();
+    stand_at(draft, &places, taste, rng)
+}
+
+/// The life of somebody who stands at the first of some places where there is room.
+pub(super) fn stand_at(draft: &mut Draft, places: &[Vec2], taste: Taste, rng: &mut ChaCha8Rng) -> Option<Vec<PieceId>> {
+    let role = first_role(draft.base.library, false, taste, rng);
+    let mut quiet = places.iter().filter(|&&place| draft.view().is_quiet(place, ELBOW_ROOM));
+    let first = quiet.find_map(|&place| first_piece(draft, role, place, rng))?;
     let here = first.entry().position;
     let pieces = life(draft, first, taste, rng)?;
     pieces.iter().all(|&id| draft.piece(id).entry().position.distance(here) < ASTIR).then_some(pieces)
@@ -103,7 +130,7 @@ fn life(draft: &mut Draft, first: Piece, taste: Taste, rng: &mut ChaCha8Rng) -> 
     Some(pieces)
 }
 
-fn anywhere(draft: &Draft, rng: &mut ChaCha8Rng) -> Vec2 {
+pub(super) fn anywhere(draft: &Draft, rng: &mut ChaCha8Rng) -> Vec2 {
     let domain = draft.base.domain;
     Vec2::new(rng.random_range(domain.min.x..domain.max.x), rng.random_range(domain.min.y..domain.max.y))
 }
@@ -126,24 +153,25 @@ fn first_piece(draft: &Draft, role: u32, place: Vec2, rng: &mut ChaCha8Rng) -> O
     draft.view().is_free(&first).then_some(first)
 }
 
-/// Any single-person role without a box, the calmer the more often one of somebody who stands; or with a box, half of
+/// Any single-person role without a box, the calmer the more often one of somebody who stands, compact ones rather; or with a box, half of
 /// them roles that take it up, if there are such.
 fn first_role(library: &Library, laden: bool, taste: Taste, rng: &mut ChaCha8Rng) -> u32 {
     let lifts = |m: &Move| library.roles[m.role as usize].rests[0].is_some() && library.laden[m.group as usize];
     let carries = |m: &Move| library.laden[library.roles[m.role as usize].entry_group as usize];
-    let roles = |wanted: &dyn Fn(&Move) -> bool| -> Vec<u32> {
-        library.forward.iter().flatten().filter(|m| wanted(m)).map(|m| m.role).collect()
+    let moves = |wanted: &dyn Fn(&Move) -> bool| -> Vec<&Move> {
+        library.forward.iter().flatten().filter(|m| wanted(m)).collect()
     };
     let wanted = match laden {
-        true if rng.random_range(0..2) == 0 => roles(&lifts),
-        true => roles(&carries),
+        true if rng.random_range(0..2) == 0 => moves(&lifts),
+        true => moves(&carries),
         false if rng.random_range(0.0..1.0) > taste.calm => {
-            roles(&|m| m.speed < STANDING_SPEED && !lifts(m) && !carries(m))
+            moves(&|m| m.speed < STANDING_SPEED && !lifts(m) && !carries(m))
         }
-        false => roles(&|m| !lifts(m) && !carries(m)),
+        false => moves(&|m| !lifts(m) && !carries(m)),
     };
-    let wanted = if wanted.is_empty() { roles(&|_| true) } else { wanted };
-    *wanted
-        .choose_weighted(rng, |&r| library.preference.weight_of_kind(library.roles[r as usize].kind))
-        .expect("some role")
+    let wanted = if wanted.is_empty() { moves(&|_| true) } else { wanted };
+    let weight = |m: &&Move| {
+        library.preference.weight_of_kind(library.roles[m.role as usize].kind) * (-taste.compact * m.room).exp()
+    };
+    wanted.choose_weighted(rng, weight).expect("some role").role
 }

@@ -27,7 +27,7 @@ use crate::{Error, Result};
 pub(super) const LEAD: i32 = 24;
 /// A way that this many closings lead along is easy.
 const EASY: usize = 2;
-const TASTE: Taste = Taste { calm: 1.0, expansions: 60 };
+const TASTE: Taste = Taste { calm: 1.0, compact: 0.0, expansions: 60 };
 
 /// How much is found out.
 #[derive(Clone, Copy)]

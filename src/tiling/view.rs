@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::domain::{Domain, Spot};
 use super::footprint::Footprint;
@@ -10,6 +10,9 @@ use super::library::Library;
 use super::occupancy::{Occupancy, PieceId, Shown};
 use super::piece::{Body, Company, Piece, Rigid, Ties, footprint, lifts, overlap, world_discs};
 use super::sketch::Sketch;
+
+/// Ticks between those at which a place is looked at.
+const QUIET_STEP: usize = 6;
 
 /// What a search looks at.
 #[derive(Clone, Copy)]
@@ -77,6 +80,17 @@ impl<'a> View<'a> {
                 && self.meet(player, tick, &body, &mut |_| ControlFlow::Break(())).is_continue()
         };
         (0..n).step_by(8).all(free) && (4..n).step_by(8).all(free) && (0..n).filter(|i| i % 4 != 0).all(free)
+    }
+
+    /// True if nobody's path point ever comes nearer to a place than some distance, at every few ticks that are looked at.
+    pub fn is_quiet(self, place: Vec2, distance: f32) -> bool {
+        let is_near =
+            |shown: &Shown| self.domain.torus.nearest(shown.position - place).length_squared() < distance * distance;
+        let mut near = Vec::new();
+        (0..self.domain.horizon).step_by(QUIET_STEP).all(|tick| {
+            self.occupancy.near(tick, place, distance, &mut near);
+            near.iter().all(|&id| self.sketch.hides(id)) && !self.sketch.at(tick).iter().any(is_near)
+        })
     }
 
     /// The pieces whose bodies are in the way of `piece`, sorted; `None` if a wall or a crush is.

@@ -48,7 +48,7 @@ const PACE: [f32; 2] = [0.65, 1.35];
 const SPARE: f32 = 2.0;
 /// Where people meet is so far inside, metres.
 const INSIDE: f32 = 1.5;
-const TASTE: Taste = Taste { calm: 1.0, expansions: 500 };
+const TASTE: Taste = Taste { calm: 1.0, compact: 0.0, expansions: 500 };
 /// Joints may turn this much faster than in the captures.
 const RUSH: f32 = 1.2;
 /// Kinds whose people are deeper in each other than this are left out, metres: captured bodies were thinner than ours.

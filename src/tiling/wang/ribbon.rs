@@ -44,7 +44,7 @@ const SIDE_ROOM: f32 = 0.1;
 const APART: f32 = 0.9;
 /// Ticks of a way to and from a ribbon that are kept free of all others.
 const LEAD: i32 = 40;
-const TASTE: Taste = Taste { calm: 1.0, expansions: 60 };
+const TASTE: Taste = Taste { calm: 1.0, compact: 0.0, expansions: 60 };
 /// Ways across that are tried for each that is wanted.
 const TRIES: usize = 2000;
 
