@@ -13,7 +13,7 @@ from statistics import median
 
 from rich.table import Table
 
-from crowdquilt import bench_steering, motion, patch, refine, samples
+from crowdquilt import bench_steering, bench_walks, motion, patch, refine, samples
 from crowdquilt._core import PatchSet, Scene, measure_patches, measure_poses, measure_replay, measure_street, tile
 from crowdquilt.bench_row import Row, row
 from crowdquilt.bench_tiling import EXAMPLES, PAPER, STATIC, example, growth, planes, repeating, static
@@ -152,6 +152,7 @@ def worlds(seeds: int, say: Say) -> list[Row]:
     typical, _, _, free = measure_patches(16, 20 * seeds, True)
     rows.append(row("world", "the paper's particles here: median", typical, "ms"))
     rows.append(row("world", "the paper's particles here: share without any fault", free))
+    rows += bench_walks.distributions()
     made, resident, typical, _, most = measure_street(10_000)
     say(f"world: endless-street: {made} patches, {most:.2f} ms at most")
     rows.append(row("world", "endless-street: 10 km, patches made", made))

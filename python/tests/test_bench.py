@@ -7,7 +7,7 @@ from dataclasses import fields
 import pytest
 
 import crowdquilt as cq
-from crowdquilt import bench, bench_steering, bench_tiling
+from crowdquilt import bench, bench_steering, bench_tiling, bench_walks
 
 
 def test_rows_are_measured_on_the_scene(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -78,3 +78,13 @@ def test_steering_that_is_missing_is_skipped_by_name(monkeypatch: pytest.MonkeyP
 def test_steering_walks_on_the_street(name: str) -> None:
     pytest.importorskip(name, reason=f"{name} is not installed")
     assert bench_steering.LIBRARIES[name](bench_steering.street()) > 100
+
+
+def test_walkers_keep_their_limits() -> None:
+    rows = {row.row: row for row in bench_walks.distributions()}
+    for name in bench_walks.LIMITS:
+        low, half, high = (rows[f"walkers' {name}: {share} %"].ours for share in (5, 50, 95))
+        most = rows[f"walkers' {name}: most"]
+        assert most.reference is not None
+        assert 0 <= low < half < high < most.ours <= most.reference, name
+    assert rows["walkers' speed: 50 %"].ours > 1.0
