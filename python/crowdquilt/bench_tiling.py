@@ -39,7 +39,8 @@ STATIC = (
     Static("static-657", 68, 0.3, 657, 60, 17 * 60),
     Static("static-907", 94, 0.3, 907, 70, 103 * 60),
     Static("density-144", 144, 0.25),
-    Static("density-max", 200, 0.08),
+    Static("density-200", 200, 0.08),
+    Static("density-max", 200, 0.2),
 )
 SQUARES = ((8, 0.5), (16, 0.5), (32, 0.5), (120, 0.4862))
 """Sides of the squares over which growth is measured, metres, and people per square metre: the largest holds 7,000."""

@@ -9,8 +9,8 @@ use crate::geom::sin_cos;
 use crate::motion::JOINT_COUNT;
 
 impl GaitTable {
-    /// Poses of bodies, and their hips in the frame of their places, as many as there are of each. Eight bodies at a time cost half
-    /// as much as one by one. No allocation.
+    /// Poses of bodies, and their hips in the frame of their places, as many as there are of each. Legs are led for eight bodies at
+    /// a time, so one alone costs as much there as eight together. No allocation.
     pub fn poses(&self, bodies: &[Walking], poses: &mut [[Quat; JOINT_COUNT]], hips: &mut [Vec3]) {
         pulp::Arch::new().dispatch(Posing { table: self, bodies, poses, hips });
     }
