@@ -58,8 +58,18 @@ pub const BODY_CAPSULES: [BodyCapsule; 16] = [
     tip(RIGHT_HAND, [-0.10, 0.0, 0.0], 0.035),
 ];
 
-/// The capsules of a body whose joints' global transforms are given, appended to `out`.
+/// The capsules of a body whose joints' global transforms are given, in the order of [`BODY_CAPSULES`].
+#[inline]
+pub fn shape(globals: &[(Vec3, Quat)]) -> [Capsule; BODY_CAPSULES.len()] {
+    // Most ends are joints: there is nothing to turn.
+    let at = |(joint, offset): (usize, Vec3)| match offset {
+        Vec3::ZERO => globals[joint].0,
+        offset => globals[joint].0 + globals[joint].1 * offset,
+    };
+    BODY_CAPSULES.map(|c| Capsule { a: at(c.a), b: at(c.b), radius: c.radius })
+}
+
+/// The same, appended to `out`.
 pub fn body_capsules(globals: &[(Vec3, Quat)], out: &mut Vec<Capsule>) {
-    let at = |(joint, offset): (usize, Vec3)| globals[joint].0 + globals[joint].1 * offset;
-    out.extend(BODY_CAPSULES.iter().map(|c| Capsule { a: at(c.a), b: at(c.b), radius: c.radius }));
+    out.extend(shape(globals));
 }

@@ -33,7 +33,7 @@ pub mod together;
 
 pub(crate) use build::{ANKLE_HEIGHT, BuildRows};
 
-pub use body::{BODY_CAPSULES, BodyCapsule, BodyPart, body_capsules};
+pub use body::{BODY_CAPSULES, BodyCapsule, BodyPart, body_capsules, shape};
 pub use build::{Build, Flesh, Proportions};
 pub use clip::Clip;
 pub use mirror::motion as mirror;

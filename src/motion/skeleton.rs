@@ -35,15 +35,21 @@ impl Skeleton {
 
     /// Global position and rotation of each joint, from the root's position and all local rotations. O(joints).
     pub fn globals(&self, root: Vec3, rotations: &[Quat], out: &mut Vec<(Vec3, Quat)>) {
-        out.clear();
-        for (joint, &local) in self.joints.iter().zip(rotations) {
-            out.push(match joint.parent {
+        out.resize(rotations.len().min(self.joints.len()), (Vec3::ZERO, Quat::IDENTITY));
+        self.place(root, rotations, out);
+    }
+
+    /// The same into as many places as there are rotations: of the first joints only, if they are fewer.
+    #[inline]
+    pub fn place(&self, root: Vec3, rotations: &[Quat], out: &mut [(Vec3, Quat)]) {
+        for (j, (joint, &local)) in self.joints.iter().zip(rotations).enumerate() {
+            out[j] = match joint.parent {
                 None => (root, local),
                 Some(parent) => {
                     let (position, rotation) = out[parent];
                     (position + rotation * joint.offset, rotation * local)
                 }
-            });
+            };
         }
     }
 }

@@ -19,7 +19,7 @@ mod speed;
 pub mod study;
 
 pub(crate) use file::{filed_rotation, pack_rotation, unpack_rotation};
-pub(crate) use speed::{fastest_turns, turn_between};
+pub(crate) use speed::{Turns, fastest_turns, turn_between};
 
 pub use cut::{CutOptions, Source, cut, load_take};
 pub use make::{Made, MakeOptions, Step, cut_folder, make, make_with};

@@ -27,6 +27,9 @@ pub(super) fn carry(segments: &[Segment], last_frame: u32) -> Body {
     let last = segments.last().map_or(-1, |s| s.placed.end.min(last_frame as i32));
     let mut body = Body { begin: first as u32, ..Body::default() };
     let stitches: Vec<Stitch> = segments.windows(2).map(|pair| Stitch::between(&pair[0], &pair[1])).collect();
+    let frames = (last + 1 - first).max(0) as usize;
+    body.root.reserve_exact(frames);
+    body.rotations.reserve_exact(frames * JOINT_COUNT);
     let mut current = 0;
     for frame in first..=last {
         while current + 1 < segments.len() && frame >= segments[current].placed.end {

@@ -122,11 +122,9 @@ struct Poses<'a> {
 
 impl<'a> Poses<'a> {
     fn new(body: &Body, holds: &[Hold], bones: &'a Skeleton) -> Self {
-        let mut globals = Vec::new();
-        let mut all = Vec::with_capacity(body.rotations.len());
-        for f in 0..body.root.len() {
-            body.globals(f, &mut globals);
-            all.extend_from_slice(&globals);
+        let mut all = vec![(Vec3::ZERO, Quat::IDENTITY); body.rotations.len()];
+        for (f, globals) in all.chunks_exact_mut(JOINT_COUNT).enumerate() {
+            canonical().place(body.root[f], body.pose(f), globals);
         }
         let free = (0..body.root.len()).map(|f| 1.0 - weight(holds, HIPS, f)).collect();
         Self { bones, canonical: all, free, places: [Vec3::ZERO; JOINT_COUNT] }

@@ -12,9 +12,10 @@ use super::domain::Domain;
 use super::library::Library;
 use super::occupancy::{Occupancy, PieceId};
 use super::piece::{Piece, Shift};
+use super::rehearsal::Rehearsal;
 use crate::motion::{Build, JOINT_COUNT};
 use crate::patch::{PatchKind, filed_rotation};
-use crate::refine::{Body, Performance};
+use crate::refine::Body;
 use crate::stage::{Character, Crowd, DomainInfo, FragmentUse, Instance};
 
 /// A tiling as people: each person's pieces in order of time.
@@ -119,9 +120,12 @@ fn placed<'a>(library: &Library<'a>, domain: &Domain, piece: &Piece, by: Shift) 
 }
 
 /// The finished crowd. Instances are numbered in the order in which people meet them.
-pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, played: Performance) -> Crowd {
-    let Performance { bodies, props, .. } = played;
-    let builds = people(chains, &bodies, &props, seed);
+pub(super) fn bake(chains: Chains, scene: &Scene, seed: u64, rehearsal: Rehearsal) -> Crowd {
+    let Rehearsal { played, encounters, .. } = rehearsal;
+    let builds = people(chains, &played, &encounters, seed);
+    // What everybody's body was made from is no longer needed, and large.
+    let props = played.props;
+    drop(played.bodies);
     let mut characters: Vec<Character> = builds
         .into_par_iter()
         .enumerate()

@@ -1,11 +1,16 @@
 //! Exact tests of the boxes that people carry or that lie there: they enter no body, no wall and no other box.
 
+use std::collections::BTreeSet;
+
 use glam::Vec2;
+use rayon::prelude::*;
 
 use super::bake::Chains;
 use super::domain::{Domain, Spot};
-use super::figure::{Figure, Places, REACH, TOLERANCE, frame_at};
+use super::faults::Fault;
+use super::figure::{Figure, REACH, TOLERANCE, frame_at};
 use super::piece::Piece;
+use super::places::Places;
 use super::tracks::TrackId;
 use crate::geom::{Capsule, Cuboid};
 use crate::motion::canonical;
@@ -17,8 +22,30 @@ const SAME: f32 = 0.02;
 /// Points of a box's edges that are tested against walls are this far apart, metres.
 const SPACING: f32 = 0.06;
 
+/// All faults of boxes in which somebody new has a part, each at its first tick. O(ticks x people), in parallel.
+pub(super) fn in_the_way(chains: Chains, played: &Performance, is_new: &[bool]) -> Vec<Fault> {
+    if played.props.is_empty() {
+        return vec![];
+    }
+    let at_tick = |places: &mut Places, tick: i32| {
+        places.look(tick..=tick, played.bodies.iter(), chains.domain.torus, REACH);
+        let mut now = to_blame(chains, played, places, tick);
+        now.retain(|&(a, b)| is_new[a] || is_new[b]);
+        (tick, now)
+    };
+    let per_tick: Vec<_> = chains.domain.frames().into_par_iter().map_init(Places::default, at_tick).collect();
+    let mut open: BTreeSet<(TrackId, TrackId)> = BTreeSet::new();
+    let mut faults = Vec::new();
+    for (tick, pairs) in per_tick {
+        let now: BTreeSet<_> = pairs.into_iter().collect();
+        faults.extend(now.difference(&open).map(|&(a, b)| Fault { a, b, tick }));
+        open = now;
+    }
+    faults
+}
+
 /// The people to blame for boxes that enter something at a tick: two different ones, or one alone.
-pub(super) fn in_the_way(chains: Chains, played: &Performance, places: &Places, tick: i32) -> Vec<(TrackId, TrackId)> {
+fn to_blame(chains: Chains, played: &Performance, places: &Places, tick: i32) -> Vec<(TrackId, TrackId)> {
     let mut here: Vec<(&Prop, Cuboid)> =
         played.props.iter().filter_map(|p| Some((p, p.at_frame(u32::try_from(tick).ok()?)?))).collect();
     here.sort_by(|(_, a), (_, b)| a.at.middle.x.total_cmp(&b.at.middle.x));

@@ -15,12 +15,14 @@ use rayon::prelude::*;
 use super::bake::{Chains, segments_of};
 use super::boxes::depth_in;
 use super::domain::Spot;
-use super::faults::is_rushed;
-use super::figure::{Figure, Places, REACH, TOLERANCE};
+use super::encounters::Encounters;
+use super::faults::Haste;
+use super::figure::{Figure, Figures, REACH, TOLERANCE, frame_at};
+use super::places::Places;
 use super::torsos::{Meeting, meetings};
 use crate::geom::Cuboid;
 use crate::motion::{Build, canonical};
-use crate::refine::{Body, Hold, Segment, fit, holds};
+use crate::refine::{Body, Hold, Performance, Segment, fit, holds};
 use crate::stage::Prop;
 
 /// Steps from a build to the canonical bones.
@@ -31,9 +33,14 @@ const RUSH: f32 = 1.18;
 const TOGETHER: f32 = 0.003;
 
 /// Everybody's build, and their motion fitted to it. Deterministic in `seed`.
-pub(super) fn people(chains: Chains, bodies: &[Body], props: &[Prop], seed: u64) -> Vec<(Arc<Build>, Body)> {
-    let mut fitting = Fitting::begin(chains, bodies, props, seed);
-    let mut changed = vec![true; bodies.len()];
+pub(super) fn people(
+    chains: Chains,
+    played: &Performance,
+    encounters: &Encounters,
+    seed: u64,
+) -> Vec<(Arc<Build>, Body)> {
+    let mut fitting = Fitting::begin(chains, played, encounters, seed);
+    let mut changed = vec![true; played.bodies.len()];
     while changed.contains(&true) {
         let mut clashes = fitting.clashes(&changed);
         clashes.extend(fitting.missed(&changed));
@@ -42,7 +49,7 @@ pub(super) fn people(chains: Chains, bodies: &[Body], props: &[Prop], seed: u64)
         bumps.into_iter().for_each(|p| changed[p] |= fitting.worn[p].tone + 1 < TONES);
         fitting.change(&changed);
     }
-    let builds: Vec<Arc<Build>> = (0..bodies.len()).map(|p| fitting.build(p).clone()).collect();
+    let builds: Vec<Arc<Build>> = (0..changed.len()).map(|p| fitting.build(p).clone()).collect();
     builds.into_iter().zip(fitting.worn).map(|(build, worn)| (build, worn.body)).collect()
 }
 
@@ -53,6 +60,7 @@ struct Fitting<'a> {
     /// Everybody's motion with a canonical body.
     bodies: &'a [Body],
     holds: Vec<Vec<Hold>>,
+    encounters: &'a Encounters,
     meetings: Vec<Meeting>,
     /// Everybody's build, an index into the catalogue.
     dealt: Vec<usize>,
@@ -66,11 +74,12 @@ struct Worn {
 }
 
 impl<'a> Fitting<'a> {
-    fn begin(chains: Chains<'a>, bodies: &'a [Body], props: &'a [Prop], seed: u64) -> Self {
+    fn begin(chains: Chains<'a>, played: &'a Performance, encounters: &'a Encounters, seed: u64) -> Self {
+        let Performance { bodies, props, .. } = played;
         let people = 0..bodies.len();
         let holds = people.clone().into_par_iter().map(|p| holds_of(chains, p, &bodies[p])).collect();
-        let meetings = meetings(chains);
-        let mut out = Self { chains, props, bodies, holds, meetings, dealt: deal(bodies.len(), seed), worn: vec![] };
+        let (meetings, dealt) = (meetings(chains), deal(bodies.len(), seed));
+        let mut out = Self { chains, props, bodies, holds, encounters, meetings, dealt, worn: vec![] };
         out.worn = people.into_par_iter().map(|p| out.dress(p, 0)).collect();
         out
     }
@@ -91,11 +100,12 @@ impl<'a> Fitting<'a> {
 
     fn is_sound(&self, person: usize, body: &Body, build: &Build) -> bool {
         let Chains { library, domain, .. } = self.chains;
+        let haste = Haste::new(library, RUSH);
         let spot = |f: usize| Spot::ground(body.begin as i32 + f as i32);
         let near = |f: &usize| !domain.holds(spot(*f), Vec2::new(body.root[*f].x, body.root[*f].z), REACH);
         let figure = |f: usize| Some((f, Figure::of(body, &build.skeleton, (body.begin as usize + f) as i32)?));
         body.strained.len() <= self.bodies[person].strained.len()
-            && !(0..body.root.len()).any(|f| is_rushed(body, library, f, RUSH))
+            && !(0..body.root.len()).any(|f| haste.is_exceeded(body, f))
             && !(0..body.root.len())
                 .filter(near)
                 .filter_map(figure)
@@ -132,24 +142,24 @@ impl<'a> Fitting<'a> {
 
     /// All pairs, one or both of them changed, whose fitted bodies are in each other where the canonical ones are not.
     fn clashes(&self, changed: &[bool]) -> Vec<(usize, usize)> {
-        let at_tick = |tick: i32| -> Vec<(usize, usize)> {
-            let mut pairs = Vec::new();
-            let places = Places::at(tick, self.worn.iter().map(|w| &w.body), self.chains.domain.torus);
-            places.pairs(
-                changed,
-                |p| self.figure(p, tick),
-                |(p, a), (q, b)| {
-                    if self.is_clash((p, a), (q, b), tick) {
-                        pairs.push((p.min(q), p.max(q)));
-                    }
-                },
-            );
-            pairs
+        let of_person = |figures: &mut Figures, p: usize| {
+            let (body, bones) = (&self.worn[p].body, &self.build(p).skeleton);
+            figures.begin(body.root.len());
+            let mut clashes: Vec<(usize, usize)> = Vec::new();
+            for (q, tick) in self.encounters.with(p) {
+                let is_known = clashes.last().is_some_and(|&(_, last)| last == q);
+                if (changed[p] || changed[q])
+                    && !is_known
+                    && let Some(frame) = frame_at(body, tick)
+                    && self.is_clash((p, figures.at(body, bones, frame)), q, tick)
+                {
+                    clashes.push((p, q));
+                }
+            }
+            clashes
         };
-        let mut all: Vec<(usize, usize)> = self.chains.domain.frames().into_par_iter().flat_map_iter(at_tick).collect();
-        all.sort_unstable();
-        all.dedup();
-        all
+        let people = (0..self.worn.len()).into_par_iter();
+        people.map_init(Figures::default, of_person).flatten_iter().collect()
     }
 
     /// The pairs, one or both of them changed, whose torsos no longer meet.
@@ -164,28 +174,30 @@ impl<'a> Fitting<'a> {
         self.meetings.iter().filter(missed).map(|m| (m.people[0], m.people[1])).collect()
     }
 
-    fn is_clash(&self, (p, a): (usize, &Figure), (q, b): (usize, &Figure), tick: i32) -> bool {
-        let depth = a.depth_into(b);
+    fn is_clash(&self, (p, a): (usize, &Figure), q: usize, tick: i32) -> bool {
+        let torus = self.chains.domain.torus;
+        let Some(b) = self.figure(q, tick) else { return false };
+        let depth = a.depth_into(&b.beside(a, torus));
         if depth <= TOLERANCE {
             return false;
         }
         let instance = |p: usize| self.chains.piece_at(p, tick).map(|piece| piece.instance);
         let allowed = if instance(p) == instance(q) { TOGETHER } else { 0.0 };
         match (self.canonical_figure(p, tick), self.canonical_figure(q, tick)) {
-            (Some(a), Some(b)) => depth > a.depth_into(&b.beside(&a, self.chains.domain.torus)) + allowed,
+            (Some(a), Some(b)) => depth > a.depth_into(&b.beside(&a, torus)) + allowed,
             _ => true,
         }
     }
 
     /// The changed people whose fitted bodies are deeper in a box than the canonical ones; not those who hold it.
     fn bumps(&self, changed: &[bool]) -> Vec<usize> {
-        let at_tick = |tick: i32| -> Vec<usize> {
+        let at_tick = |places: &mut Places, tick: i32| -> Vec<usize> {
             let here: Vec<(&Prop, Cuboid)> =
                 self.props.iter().filter_map(|prop| Some((prop, prop.at_frame(tick as u32)?))).collect();
             if here.is_empty() {
                 return vec![];
             }
-            let places = Places::at(tick, self.worn.iter().map(|w| &w.body), self.chains.domain.torus);
+            places.look(tick..=tick, self.worn.iter().map(|w| &w.body), self.chains.domain.torus, REACH);
             let near = |(prop, cuboid): &(&Prop, Cuboid)| {
                 let near = places.near(cuboid.at.ground().position, REACH + cuboid.radius());
                 let strangers = near.filter(|&p| changed[p] && prop.holders(tick as u32).all(|h| h != p as u32));
@@ -193,7 +205,8 @@ impl<'a> Fitting<'a> {
             };
             here.iter().flat_map(near).collect()
         };
-        let mut all: Vec<usize> = self.chains.domain.frames().into_par_iter().flat_map_iter(at_tick).collect();
+        let ticks = self.chains.domain.frames().into_par_iter();
+        let mut all: Vec<usize> = ticks.map_init(Places::default, at_tick).flatten_iter().collect();
         all.sort_unstable();
         all.dedup();
         all

@@ -1,6 +1,5 @@
 //! What is wrong with the final bodies: they are tested with their exact capsules, and boxes with them.
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 
 use glam::Vec2;
@@ -10,12 +9,13 @@ use super::bake::Chains;
 use super::boxes::in_the_way;
 use super::bridge::NO_INSTANCE;
 use super::domain::{Domain, Spot};
-use super::figure::{Figure, Places, REACH, TOLERANCE};
+use super::encounters::Encounters;
+use super::figure::{Figure, Figures, REACH, TOLERANCE, frame_at};
 use super::library::Library;
 use super::piece::Piece;
 use super::tracks::TrackId;
-use crate::motion::{JOINT_COUNT, canonical};
-use crate::patch::turn_between;
+use crate::motion::canonical;
+use crate::patch::Turns;
 use crate::refine::{Body, Performance};
 
 /// Joints may turn this much faster than in the captures.
@@ -32,30 +32,60 @@ pub(super) struct Fault {
     pub tick: i32,
 }
 
-/// All faults of the final bodies in which somebody new has a part, each at its first tick. O(ticks x people x
-/// neighbours), in parallel.
-pub(super) fn faults(chains: Chains, played: &Performance, is_new: &[bool]) -> Vec<Fault> {
-    let at_tick = |tick| {
-        let places = Places::at(tick, played.bodies.iter(), chains.domain.torus);
-        let mut pairs = in_the_way(chains, played, &places, tick);
-        pairs.retain(|&(a, b)| is_new[a] || is_new[b]);
-        pairs.extend(touching(chains, &played.bodies, &places, is_new, tick));
-        pairs
-    };
-    let per_tick: Vec<Vec<(TrackId, TrackId)>> = chains.domain.frames().into_par_iter().map(at_tick).collect();
-    let first = chains.domain.frames().start;
-    let mut open: BTreeSet<(TrackId, TrackId)> = BTreeSet::new();
-    let mut faults = Vec::new();
-    for (tick, pairs) in per_tick.into_iter().enumerate() {
-        let now: BTreeSet<_> = pairs.into_iter().collect();
-        faults.extend(now.difference(&open).map(|&(a, b)| Fault { a, b, tick: first + tick as i32 }));
-        open = now;
+impl Fault {
+    /// Both people.
+    pub fn people(self) -> [TrackId; 2] {
+        [self.a, self.b]
     }
+}
+
+/// All faults of the final bodies in which somebody new has a part, each at its first tick, in order of time.
+/// O(people x ticks), in parallel.
+pub(super) fn faults(chains: Chains, played: &Performance, encounters: &Encounters, is_new: &[bool]) -> Vec<Fault> {
     let alone = |(t, body): (TrackId, &Body)| {
         let frame = first_unclean(body, chains.library, chains.domain, tested(chains.domain, body))?;
         Some(Fault { a: t, b: t, tick: body.begin as i32 + frame as i32 })
     };
-    faults.par_extend(played.bodies.par_iter().enumerate().filter(|(t, _)| is_new[*t]).filter_map(alone));
+    let bodies = || played.bodies.par_iter().enumerate();
+    let mut faults: Vec<Fault> = bodies().filter(|(t, _)| is_new[*t]).filter_map(alone).collect();
+    let people = (0..played.bodies.len()).into_par_iter();
+    let with_others = |figures: &mut Figures, a| touches(chains, &played.bodies, encounters, is_new, figures, a);
+    faults.par_extend(people.map_init(Figures::default, with_others).flatten_iter());
+    faults.extend(in_the_way(chains, played, is_new));
+    faults.sort_unstable_by_key(|f| (f.tick, f.a, f.b));
+    faults.dedup();
+    faults
+}
+
+/// Where somebody is in people of larger numbers, one of each two new.
+fn touches(
+    chains: Chains,
+    bodies: &[Body],
+    encounters: &Encounters,
+    is_new: &[bool],
+    figures: &mut Figures,
+    a: TrackId,
+) -> Vec<Fault> {
+    let (torus, body) = (chains.domain.torus, &bodies[a]);
+    figures.begin(body.root.len());
+    let mut touching = |b: TrackId, tick: i32| {
+        let [Some(frame), Some(their_frame)] = [a, b].map(|t| frame_at(&bodies[t], tick)) else { return false };
+        let figure = figures.at(body, canonical(), frame);
+        let depth = figure.depth_into(&Figure::at(&bodies[b], canonical(), their_frame).beside(figure, torus));
+        let pieces = || [a, b].map(|t| chains.piece_at(t, tick));
+        depth > TOLERANCE && depth > TOLERANCE + captured_depth(chains.library, chains.domain, pieces(), tick)
+    };
+    let mut faults = Vec::new();
+    let mut last = None;
+    for (b, tick) in encounters.with(a) {
+        let near = (is_new[a] || is_new[b]) && encounters.are_near(bodies, [a, b], tick, torus, 0.0);
+        if near && touching(b, tick) {
+            if last != Some((b, tick - 1)) {
+                faults.push(Fault { a, b, tick });
+            }
+            last = Some((b, tick));
+        }
+    }
     faults
 }
 
@@ -74,9 +104,9 @@ pub(super) fn first_unclean(
     domain: &Domain,
     mut frames: Range<usize>,
 ) -> Option<usize> {
-    frames.find(|&f| {
-        body.strained.binary_search(&f).is_ok() || is_rushed(body, library, f, RUSH) || is_in_wall(body, domain, f)
-    })
+    let haste = Haste::new(library, RUSH);
+    frames
+        .find(|&f| body.strained.binary_search(&f).is_ok() || haste.is_exceeded(body, f) || is_in_wall(body, domain, f))
 }
 
 fn is_in_wall(body: &Body, domain: &Domain, frame: usize) -> bool {
@@ -85,27 +115,29 @@ fn is_in_wall(body: &Body, domain: &Domain, frame: usize) -> bool {
         && Figure::of(body, canonical(), tick).is_some_and(|f| f.is_in_wall(domain, tick))
 }
 
-/// True if from the frame before a joint turns or the hips move `rush` times faster than in the captures.
-pub(super) fn is_rushed(body: &Body, library: &Library, frame: usize, rush: f32) -> bool {
-    let Some(last) = frame.checked_sub(1) else { return false };
-    let longest_step = rush * library.fastest_hips + library.limits.stretch;
-    let (before, now) = (body.pose(last), body.pose(frame));
-    body.root[frame].distance(body.root[last]) > longest_step
-        || (0..JOINT_COUNT).any(|j| turn_between(before[j], now[j]) > rush * library.fastest[j])
+/// How fast people may move.
+pub(super) struct Haste {
+    /// Longest way of the hips in a frame, metres.
+    step: f32,
+    turns: Turns,
 }
 
-/// Who is in whom at a tick, somebody new in each pair.
-fn touching(chains: Chains, bodies: &[Body], places: &Places, is_new: &[bool], tick: i32) -> Vec<(TrackId, TrackId)> {
-    let mut pairs = Vec::new();
-    let figure = |t: TrackId| Figure::of(&bodies[t], canonical(), tick);
-    places.pairs(is_new, figure, |(a, first), (b, second)| {
-        let depth = first.depth_into(second);
-        let pieces = || [a, b].map(|t| chains.piece_at(t, tick));
-        if depth > TOLERANCE && depth > TOLERANCE + captured_depth(chains.library, chains.domain, pieces(), tick) {
-            pairs.push((a.min(b), a.max(b)));
+impl Haste {
+    /// So many times as fast as in the captures.
+    pub fn new(library: &Library, rush: f32) -> Self {
+        Self {
+            step: rush * library.fastest_hips + library.limits.stretch,
+            turns: Turns::up_to(library.fastest.map(|turn| rush * turn)),
         }
-    });
-    pairs
+    }
+
+    /// True if from the frame before a joint turns or the hips move further.
+    pub fn is_exceeded(&self, body: &Body, frame: usize) -> bool {
+        frame.checked_sub(1).is_some_and(|last| {
+            body.root[frame].distance(body.root[last]) > self.step
+                || self.turns.are_exceeded(body.pose(last), body.pose(frame))
+        })
+    }
 }
 
 /// How deep two people who are in one patch at a tick are in each other in its capture at that moment, metres; 0 if they

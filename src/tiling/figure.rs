@@ -1,49 +1,96 @@
 //! A final body at one moment, as it is tested: its capsules, and the disc on the ground that covers them.
 
-use std::cell::OnceCell;
-
 use glam::{Quat, Vec2, Vec3};
 
 use super::domain::{Domain, Spot};
 use crate::geom::{Capsule, Torus};
-use crate::motion::{Skeleton, body_capsules};
+use crate::motion::{BODY_CAPSULES, JOINT_COUNT, Skeleton, shape};
 use crate::refine::Body;
 
 /// No body reaches further from its hips than this, metres.
 pub(super) const REACH: f32 = 1.1;
-/// Bodies whose hips are further apart than this never touch, metres.
-const TOUCHING_HIPS: f32 = 2.0 * REACH;
 /// Interpenetration that is let pass, metres.
 pub(super) const TOLERANCE: f32 = 0.005;
 
 /// A body's shape.
+#[derive(Clone)]
 pub(super) struct Figure {
     /// What it is made of.
-    pub capsules: Vec<Capsule>,
+    pub capsules: [Capsule; PARTS],
     /// Where the hips are.
     pub center: Vec2,
     /// Distance from there of the farthest point.
     pub radius: f32,
+    balls: Balls,
+}
+
+/// Number of capsules.
+const PARTS: usize = BODY_CAPSULES.len();
+
+/// A ball around each capsule, coordinate by coordinate, so that many are compared at once.
+#[derive(Clone, Copy)]
+struct Balls {
+    x: [f32; PARTS],
+    y: [f32; PARTS],
+    z: [f32; PARTS],
+    radius: [f32; PARTS],
+}
+
+impl Balls {
+    fn around(capsules: &[Capsule; PARTS]) -> Self {
+        let mut balls = Self { x: [0.0; PARTS], y: [0.0; PARTS], z: [0.0; PARTS], radius: [0.0; PARTS] };
+        for (i, c) in capsules.iter().enumerate() {
+            let middle = (c.a + c.b) * 0.5;
+            (balls.x[i], balls.y[i], balls.z[i]) = middle.into();
+            balls.radius[i] = c.a.distance(c.b) * 0.5 + c.radius;
+        }
+        balls
+    }
+
+    fn middle(&self, i: usize) -> Vec3 {
+        Vec3::new(self.x[i], self.y[i], self.z[i])
+    }
+
+    /// One bit for each ball that another one enters.
+    fn near(&self, to: Vec3, radius: f32) -> u32 {
+        let mut bits = 0;
+        let mut is_near = [0u32; PARTS];
+        for (i, is_near) in is_near.iter_mut().enumerate() {
+            let (x, y, z) = (self.x[i] - to.x, self.y[i] - to.y, self.z[i] - to.z);
+            let reach = self.radius[i] + radius;
+            *is_near = u32::from(x * x + y * y + z * z < reach * reach);
+        }
+        for (i, near) in is_near.into_iter().enumerate() {
+            bits |= near << i;
+        }
+        bits
+    }
 }
 
 impl Figure {
     /// The body whose joints' global transforms are given.
     pub fn new(globals: &[(Vec3, Quat)]) -> Self {
-        let mut capsules = Vec::new();
-        body_capsules(globals, &mut capsules);
+        let capsules = shape(globals);
         let ground = |v: Vec3| Vec2::new(v.x, v.z);
         let center = ground(globals[0].0);
-        let reach = |c: &Capsule| ground(c.a).distance(center).max(ground(c.b).distance(center)) + c.radius;
-        let radius = capsules.iter().map(reach).fold(0.0, f32::max);
-        Self { capsules, center, radius }
+        let mut radius = 0.0f32;
+        for c in &capsules {
+            let far = ground(c.a).distance_squared(center).max(ground(c.b).distance_squared(center));
+            radius = radius.max(far.sqrt() + c.radius);
+        }
+        Self { balls: Balls::around(&capsules), capsules, center, radius }
     }
 
-    /// A body of the given bones at a tick, if it is there.
+    /// A body of the given bones at a frame of its motion.
+    pub fn at(body: &Body, bones: &Skeleton, frame: usize) -> Self {
+        let mut globals = [(Vec3::ZERO, Quat::IDENTITY); JOINT_COUNT];
+        bones.place(body.root[frame], body.pose(frame), &mut globals);
+        Self::new(&globals)
+    }
+
+    /// The same at a tick, if it is there.
     pub fn of(body: &Body, bones: &Skeleton, tick: i32) -> Option<Self> {
-        let frame = frame_at(body, tick)?;
-        let mut globals = Vec::new();
-        bones.globals(body.root[frame], body.pose(frame), &mut globals);
-        Some(Self::new(&globals))
+        Some(Self::at(body, bones, frame_at(body, tick)?))
     }
 
     /// True if a limb is in a wall or an obstacle at a tick.
@@ -65,6 +112,7 @@ impl Figure {
         for c in &mut self.capsules {
             (c.a, c.b) = (c.a + by3, c.b + by3);
         }
+        self.balls = Balls::around(&self.capsules);
         self.center += by;
         self
     }
@@ -77,76 +125,46 @@ impl Figure {
 
     /// Depth of the deepest pair of capsules, metres; 0 if none touch.
     pub fn depth_into(&self, other: &Self) -> f32 {
-        if self.center.distance(other.center) >= self.radius + other.radius {
-            return 0.0;
-        }
         let mut deepest = 0.0f32;
-        for a in &self.capsules {
-            let (middle, half) = ((a.a + a.b) * 0.5, a.a.distance(a.b) * 0.5 + a.radius);
-            for b in &other.capsules {
-                let reach = half + b.a.distance(b.b) * 0.5 + b.radius - deepest;
-                if middle.distance_squared((b.a + b.b) * 0.5) < reach * reach {
-                    deepest = deepest.max(a.penetration(b));
-                }
+        let reach = self.radius + other.radius;
+        if self.center.distance_squared(other.center) >= reach * reach {
+            return deepest;
+        }
+        for (i, a) in self.capsules.iter().enumerate() {
+            let mut near = other.balls.near(self.balls.middle(i), self.balls.radius[i]);
+            while near != 0 {
+                let b = &other.capsules[near.trailing_zeros() as usize];
+                near &= near - 1;
+                deepest = deepest.max(a.penetration(b));
             }
         }
         deepest
     }
 }
 
-/// Where everybody's hips are at a tick, sorted along x, so that near ones are neighbours. Where the ground repeats, all
-/// are in the region, and images of those who are near its border beyond it.
-pub(super) struct Places(Vec<(Vec2, usize)>);
+/// Figures of one body at some of its frames, each made when it is first asked for.
+#[derive(Default)]
+pub(super) struct Figures {
+    /// One more than where a frame's figure is; 0 for none yet.
+    slots: Vec<u32>,
+    made: Vec<Figure>,
+}
 
-impl Places {
-    /// Those who are there. O(people log people).
-    pub fn at<'b>(tick: i32, bodies: impl Iterator<Item = &'b Body>, torus: Torus) -> Self {
-        let place = |(person, body): (usize, &Body)| {
-            let root = body.root[frame_at(body, tick)?];
-            Some((torus.wrap(Vec2::new(root.x, root.z)), person))
-        };
-        let mut all: Vec<(Vec2, usize)> = bodies.enumerate().filter_map(place).collect();
-        if !torus.is_plane() {
-            let images = all.iter().flat_map(|&(p, person)| torus.images(p, TOUCHING_HIPS).map(move |q| (q, person)));
-            all = images.collect();
-        }
-        all.sort_unstable_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.1.cmp(&b.1)));
-        Self(all)
+impl Figures {
+    /// Forgets all, for another body.
+    pub fn begin(&mut self, frames: usize) {
+        self.made.clear();
+        self.slots.clear();
+        self.slots.resize(frames, 0);
     }
 
-    /// People within a distance.
-    pub fn near(&self, position: Vec2, distance: f32) -> impl Iterator<Item = usize> {
-        let first = self.0.partition_point(|(p, _)| p.x < position.x - distance);
-        let row = self.0[first..].iter().take_while(move |(p, _)| p.x <= position.x + distance);
-        row.filter(move |(p, _)| p.distance_squared(position) <= distance * distance).map(|&(_, person)| person)
-    }
-
-    /// Calls `meet` with the figures of all pairs of people whose hips are near enough for them to touch, somebody new in
-    /// each pair. `figure` is asked only for those, once.
-    pub fn pairs(
-        &self,
-        is_new: &[bool],
-        figure: impl Fn(usize) -> Option<Figure>,
-        mut meet: impl FnMut((usize, &Figure), (usize, &Figure)),
-    ) {
-        let figures: Vec<OnceCell<Option<Figure>>> = self.0.iter().map(|_| OnceCell::new()).collect();
-        let image = |(place, person): (Vec2, usize)| {
-            let figure = figure(person)?;
-            let by = place - figure.center;
-            Some(if by == Vec2::ZERO { figure } else { figure.moved(by) })
-        };
-        let figure = |i: usize| figures[i].get_or_init(|| image(self.0[i])).as_ref();
-        for (i, &(here, a)) in self.0.iter().enumerate() {
-            let reached = self.0[i + 1..].iter().take_while(|(there, _)| there.x - here.x <= TOUCHING_HIPS);
-            for (k, &(there, b)) in reached.enumerate() {
-                if !(is_new[a] || is_new[b]) || a == b || here.distance_squared(there) > TOUCHING_HIPS * TOUCHING_HIPS {
-                    continue;
-                }
-                if let (Some(first), Some(second)) = (figure(i), figure(i + 1 + k)) {
-                    meet((a, first), (b, second));
-                }
-            }
+    /// The figure at a frame.
+    pub fn at(&mut self, body: &Body, bones: &Skeleton, frame: usize) -> &Figure {
+        if self.slots[frame] == 0 {
+            self.made.push(Figure::at(body, bones, frame));
+            self.slots[frame] = self.made.len() as u32;
         }
+        &self.made[self.slots[frame] as usize - 1]
     }
 }
 

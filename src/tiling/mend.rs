@@ -13,7 +13,7 @@ use super::occupancy::PieceId;
 use super::piece::Company;
 use super::seed::{is_free_to_stand, stand_aside};
 use super::tracks::{TrackId, Tracks, Window};
-use super::tryout::is_clean;
+use super::tryout::is_clean_beside;
 
 /// Windows around a fault are widened by multiples of this, ticks.
 const WINDOW: i32 = 24;
@@ -27,7 +27,7 @@ pub(super) fn mend(draft: &mut Draft, fault: Fault, taste: Taste, rng: &mut ChaC
     (0..TRIES).find_map(|attempt| {
         let track = if rng.random_range(0..2) == 0 { fault.a } else { fault.b };
         let at = near(draft.base, track, fault.tick, 1, |id| draft.base.is_loose(id))?;
-        rebridge(draft, vec![Window { track, from: at, to: at + 1 }], attempt + 1..=attempt + 1, taste, rng)
+        rebridge(draft, fault, vec![Window { track, from: at, to: at + 1 }], attempt + 1..=attempt + 1, (taste, rng))
     })
 }
 
@@ -45,7 +45,7 @@ pub(super) fn dissolve(draft: &mut Draft, fault: Fault, taste: Taste, rng: &mut 
         let instance = piece.instance;
         let window = |track| tracks.index_in(track, instance).map(|from| Window { track, from, to: from + 1 });
         let windows = (0..tracks.tracks.len()).filter_map(window).collect();
-        rebridge(draft, windows, 0..=attempt, taste, rng)
+        rebridge(draft, fault, windows, 0..=attempt, (taste, rng))
     })
 }
 
@@ -60,7 +60,7 @@ pub(super) fn restand(draft: &mut Draft, fault: Fault, stand: Taste, rng: &mut C
         draft.hide(Window { track, from: 0, to: draft.base.tracks[track].len() });
         let pieces = stand_aside(draft, track, stand, rng)?;
         draft.set_track(track, pieces);
-        is_clean(draft).then_some(())
+        is_clean_beside(draft, &fault.people()).then_some(())
     })
 }
 
@@ -78,13 +78,13 @@ fn near(tracks: &Tracks, track: TrackId, tick: i32, reach: usize, wanted: impl F
 }
 
 /// Rips up windows of tracks, each widened by as many [`WINDOW`]s as are drawn, and bridges them another way, in random
-/// order, on which everybody moves cleanly.
+/// order, on which everybody moves cleanly and the fault is no more.
 fn rebridge(
     draft: &mut Draft,
+    fault: Fault,
     mut windows: Vec<Window>,
     wider: RangeInclusive<i32>,
-    taste: Taste,
-    rng: &mut ChaCha8Rng,
+    (taste, rng): (Taste, &mut ChaCha8Rng),
 ) -> Option<()> {
     draft.restart();
     windows.shuffle(rng);
@@ -98,5 +98,5 @@ fn rebridge(
         true => draft.bridge_window_from(w, Company::NONE, taste, rng),
         false => draft.bridge_window(w, taste, rng),
     })?;
-    is_clean(draft).then_some(())
+    is_clean_beside(draft, &fault.people()).then_some(())
 }

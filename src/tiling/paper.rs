@@ -26,12 +26,10 @@ use super::bake::{Chains, bake};
 use super::clock::Clock;
 use super::domain::Domain;
 use super::engine::wishes;
-use super::faults::faults;
 use super::library::Library;
 use super::outcome::{Options, Outcome, Phase, Progress, Status};
-use super::rehearsal::perform;
+use super::rehearsal::Rehearsal;
 use crate::patch::PatchSet;
-use crate::refine::Performance;
 
 pub(super) use anneal::energy;
 
@@ -55,12 +53,12 @@ pub(super) fn tile(
     anneal::anneal(&mut tiling, scene.characters, &preference, &mut clock, &mut rng);
     let mut search = search::Search::new(preference);
     search.close(&mut tiling, &mut clock, &mut rng);
-    let (chains, played, left) = mend(&mut tiling, &mut search, &mut clock, &mut rng);
+    let (lists, rehearsal) = mend(&mut tiling, &mut search, &mut clock, &mut rng);
 
     let danglings = tiling.dangling();
-    let chains = tiling.chains(&chains);
+    let (chains, left) = (tiling.chains(&lists), rehearsal.faults.len());
     let status = status(danglings, left, chains, scene);
-    let crowd = bake(chains, scene, options.seed, played);
+    let crowd = bake(chains, scene, options.seed, rehearsal);
     Outcome { crowd, status, danglings, interpenetrations: left, solve_secs: clock.secs(), unkept: None }
 }
 
@@ -70,18 +68,18 @@ fn mend(
     search: &mut search::Search,
     clock: &mut Clock,
     rng: &mut ChaCha8Rng,
-) -> (Vec<Vec<u32>>, Performance, usize) {
+) -> (Vec<Vec<u32>>, Rehearsal) {
     let mut round = 0;
     loop {
         let lists = tiling.characters();
         let chains = tiling.chains(&lists);
-        let played = perform(chains);
-        let faults = faults(chains, &played, &vec![true; lists.len()]);
+        let rehearsal = Rehearsal::of(chains);
         round += 1;
-        if faults.is_empty() || round > MEND_ROUNDS || !clock.goes_on(|| tiling.state(Phase::Mend)) {
-            return (lists, played, faults.len());
+        if rehearsal.faults.is_empty() || round > MEND_ROUNDS || !clock.goes_on(|| tiling.state(Phase::Mend)) {
+            return (lists, rehearsal);
         }
-        let mut culprits: Vec<u32> = faults.iter().map(|f| chains.smaller_instance(f.a, f.b, f.tick)).collect();
+        let faults = rehearsal.faults.iter();
+        let mut culprits: Vec<u32> = faults.map(|f| chains.smaller_instance(f.a, f.b, f.tick)).collect();
         culprits.sort_unstable();
         culprits.dedup();
         culprits.into_iter().for_each(|instance| search.discard(tiling, instance));

@@ -2,6 +2,7 @@
 //! whoever shares patches with them.
 
 use super::bake::{Chains, segments_of};
+use super::encounters::Encounters;
 use super::faults::{Fault, faults};
 use super::tracks::Tracks;
 use crate::patch::PatchKind;
@@ -12,6 +13,8 @@ use crate::stage::FragmentUse;
 pub(super) struct Rehearsal {
     /// Bodies and boxes.
     pub played: Performance,
+    /// Who comes near to whom.
+    pub encounters: Encounters,
     /// What is wrong, in order of time for those found together.
     pub faults: Vec<Fault>,
     version: u64,
@@ -20,9 +23,17 @@ pub(super) struct Rehearsal {
 impl Rehearsal {
     /// Everybody's.
     pub fn new(tracks: &Tracks) -> Self {
-        let played = perform(tracks.chains());
-        let faults = faults(tracks.chains(), &played, &vec![true; tracks.tracks.len()]);
-        Self { played, faults, version: tracks.version() }
+        Self { version: tracks.version(), ..Self::of(tracks.chains()) }
+    }
+
+    /// Of a tiling that does not change.
+    pub fn of(chains: Chains) -> Self {
+        let uses: Vec<_> = (0..chains.lists.len()).map(|t| segments_of(chains, t)).collect();
+        let people: Vec<Vec<Segment>> = uses.iter().map(|uses| segments(uses)).collect();
+        let played = refine_all(&people, chains.domain.last_frame(), chains.domain.torus);
+        let encounters = Encounters::of(&played.bodies, chains.domain);
+        let faults = faults(chains, &played, &encounters, &vec![true; people.len()]);
+        Self { played, encounters, faults, version: 0 }
     }
 
     /// Again with what changed since. People must not have come or gone.
@@ -35,16 +46,10 @@ impl Rehearsal {
         let people: Vec<Vec<Segment>> = uses.iter().map(|uses| segments(uses)).collect();
         refine_some(&people, &who, chains.domain.last_frame(), chains.domain.torus, &mut self.played);
         self.faults.retain(|f| !is_new[f.a] && !is_new[f.b]);
-        self.faults.extend(faults(chains, &self.played, &is_new));
+        self.encounters.renew(&self.played.bodies, chains.domain, &is_new);
+        self.faults.extend(faults(chains, &self.played, &self.encounters, &is_new));
         self.version = tracks.version();
     }
-}
-
-/// The final bodies of all people, and the boxes that they carry.
-pub(super) fn perform(chains: Chains) -> Performance {
-    let uses: Vec<_> = (0..chains.lists.len()).map(|t| segments_of(chains, t)).collect();
-    let people: Vec<Vec<Segment>> = uses.iter().map(|uses| segments(uses)).collect();
-    refine_all(&people, chains.domain.last_frame(), chains.domain.torus)
 }
 
 /// A person's fragments as refinement wants them.

@@ -13,7 +13,7 @@ use super::occupancy::PieceId;
 use super::piece::Piece;
 use super::rehearsal::segments;
 use super::sketch::Sketch;
-use super::tracks::NEWCOMER;
+use super::tracks::{NEWCOMER, TrackId};
 use crate::motion::canonical;
 use crate::refine::{Body, refine_all};
 
@@ -57,16 +57,31 @@ fn ticks_of(draft: &Draft, track: &[PieceId], is_new: impl Fn(PieceId) -> bool) 
 /// True if everybody in a draft moves as people can and no two of them run into each other. Where time comes round, each
 /// person counts ticks from somewhere else; there only the former is told. O(new ticks x joints).
 pub(super) fn is_clean(draft: &Draft) -> bool {
-    is_clean_where(draft, Sketch::is_sketched)
+    try_out(draft, &[], Sketch::is_sketched)
 }
 
-/// The same from the first to the last of some pieces of each person.
+/// The same, and nobody runs into some others either.
+pub(super) fn is_clean_beside(draft: &Draft, others: &[TrackId]) -> bool {
+    let changes = |other: &TrackId| draft.changed().iter().any(|(track, _)| track == other);
+    let mut others: Vec<TrackId> = others.iter().copied().filter(|other| !changes(other)).collect();
+    others.dedup();
+    try_out(draft, &others, Sketch::is_sketched)
+}
+
+/// The same as [`is_clean`] from the first to the last of some pieces of each person.
 pub(super) fn is_clean_where(draft: &Draft, is_new: impl Fn(PieceId) -> bool) -> bool {
+    try_out(draft, &[], is_new)
+}
+
+/// Looks at everybody in a draft with new pieces, and at some others who stay as they are.
+fn try_out(draft: &Draft, others: &[TrackId], is_new: impl Fn(PieceId) -> bool) -> bool {
     let (library, domain) = (draft.base.library, draft.base.domain);
     let new = |track: &'_ [PieceId]| ticks_of(draft, track, &is_new);
     let union = |a: Range<i32>, b: Range<i32>| a.start.min(b.start)..a.end.max(b.end);
     let Some(around) = tracks(draft).filter_map(new).reduce(union) else { return true };
-    let turns: Vec<Turn> = tracks(draft).map(|track| Turn::new(draft, track, new(track), &around)).collect();
+    let tracks = tracks(draft).map(|track| (track, new(track)));
+    let others = others.iter().map(|&other| (draft.base.tracks[other].as_slice(), None));
+    let turns: Vec<Turn> = tracks.chain(others).map(|(track, new)| Turn::new(draft, track, new, &around)).collect();
     let chains: Vec<_> = turns.iter().map(|t| uses(library, domain, t.pieces.iter().copied())).collect();
     let people: Vec<_> = chains.iter().map(|chain| segments(chain)).collect();
     let bodies = refine_all(&people, domain.last_frame(), domain.torus).bodies;
@@ -110,7 +125,6 @@ fn are_apart(draft: &Draft, turns: [&Turn; 2], bodies: [&Body; 2], ticks: &Range
 
 #[cfg(test)]
 mod tests {
-    use super::super::bridge::Port;
     use super::super::common::plain_set;
     use super::super::draft::Desk;
     use super::super::scene::Scene;
@@ -121,23 +135,42 @@ mod tests {
     use crate::patch::PatchSet;
     use glam::Vec2;
 
+    /// Puts somebody into a draft who does what the first role of a kind does.
+    fn add(draft: &mut Draft, kind: &str, x: f32) {
+        let (library, domain) = (draft.base.library, draft.base.domain);
+        let kind = library.set.kinds.iter().position(|k| k.name == kind).unwrap();
+        let (role, at) = (library.first_role[kind], Ground::new(Vec2::new(x, 5.0), 0.0));
+        let id = draft.add(Piece::rigid(library, domain, role, super::super::bridge::NO_INSTANCE, at, 100));
+        draft.push_track(vec![id]);
+    }
+
     /// Two people alone, the second `apart` metres beside the first; true if they are let pass.
     fn tried(set: &PatchSet, kind: &str, apart: f32) -> bool {
         let library = Library::new(set, Limits::default());
-        let kind = set.kinds.iter().position(|k| k.name == kind).unwrap() as u32;
-        let role = library.first_role[kind as usize];
         let domain = Domain::new(&Scene::demo()).unwrap();
         let tracks = Tracks::new(&library, &domain);
         let mut desk = Desk::default();
         let mut draft = Draft::new(&tracks, &mut desk);
-        for k in 0..2 {
-            let at = Ground::new(Vec2::new(5.0 + k as f32 * apart, 5.0), 0.0);
-            let entry = Port { at, tick: 100, group: library.roles[role as usize].entry_group };
-            let piece = Piece::rigid(&library, &domain, role, super::super::bridge::NO_INSTANCE, entry.at, entry.tick);
-            let id = draft.add(piece);
-            draft.push_track(vec![id]);
-        }
+        [5.0, 5.0 + apart].into_iter().for_each(|x| add(&mut draft, kind, x));
         is_clean(&draft)
+    }
+
+    #[test]
+    fn who_runs_into_somebody_who_stays_as_they_are_is_not_let_pass_beside_them() {
+        let (set, domain) = (plain_set(), Domain::new(&Scene::demo()).unwrap());
+        let library = Library::new(&set, Limits::default());
+        let mut tracks = Tracks::new(&library, &domain);
+        let (mut desk, mut later) = (Desk::default(), Desk::default());
+        let mut draft = Draft::new(&tracks, &mut desk);
+        add(&mut draft, "idle-40", 5.0);
+        let change = draft.finish();
+        assert!(tracks.apply(change));
+        for (apart, passes) in [(0.15, false), (0.9, true)] {
+            let mut draft = Draft::new(&tracks, &mut later);
+            add(&mut draft, "idle-40", 5.0 + apart);
+            assert!(is_clean(&draft));
+            assert_eq!(is_clean_beside(&draft, &[0, 0]), passes, "{apart}");
+        }
     }
 
     #[test]

@@ -16,7 +16,7 @@ use super::bridge::{Goal, NO_INSTANCE, Port, Taste};
 use super::demands::check_set;
 use super::domain::Domain;
 use super::draft::{Desk, Draft};
-use super::faults::{captured_depth, is_rushed};
+use super::faults::{Haste, captured_depth};
 use super::figure::{Figure, TOLERANCE};
 use super::library::{Library, Move};
 use super::occupancy::PieceId;
@@ -338,7 +338,8 @@ impl Hosting<'_> {
 
     /// True if everybody moves as people can, and nobody runs into anybody else, nor into whoever comes laps later.
     fn are_clean(&self, library: &Library, domain: &Domain, chains: &[Vec<Piece>], bodies: &[Body]) -> bool {
-        let sound = |b: &Body| b.strained.is_empty() && !(1..b.root.len()).any(|f| is_rushed(b, library, f, RUSH));
+        let haste = Haste::new(library, RUSH);
+        let sound = |b: &Body| b.strained.is_empty() && !(1..b.root.len()).any(|f| haste.is_exceeded(b, f));
         let laps = 1 + bodies.iter().map(|b| b.root.len() as i32).max().unwrap_or(0) / self.lap;
         let pairs = (0..bodies.len()).flat_map(|i| (0..=i).map(move |j| (i, j)));
         bodies.iter().all(sound)

@@ -136,17 +136,18 @@ fn engine(
     (engine.agenda, engine.keeper) = (agenda, keeper);
     engine.before = from.map_or(0.0, |kept| kept.reached.secs);
     engine.search();
-    let Rehearsal { played, faults, .. } = engine.finish(REFILLS);
+    let rehearsal = engine.finish(REFILLS);
     engine.keep();
     let Engine { mut crew, clock, agenda, keeper, .. } = engine;
     crew.tracks.occupancy.close();
-    let status = status(crew.tracks.chains(), scene, faults.len(), agenda.placed);
-    let mut crowd = bake(crew.tracks.chains(), scene, options.seed, played);
+    let interpenetrations = rehearsal.faults.len();
+    let status = status(crew.tracks.chains(), scene, interpenetrations, agenda.placed);
+    let mut crowd = bake(crew.tracks.chains(), scene, options.seed, rehearsal);
     for (person, character) in crowd.characters.iter_mut().enumerate() {
         character.team = team_of(&crew.tracks, person).map(|team| team as u32);
     }
-    let (interpenetrations, unkept) = (faults.len(), keeper.into_problem());
-    Ok(Outcome { crowd, status, danglings: 0, interpenetrations, solve_secs: clock.secs(), unkept })
+    let (solve_secs, unkept) = (clock.secs(), keeper.into_problem());
+    Ok(Outcome { crowd, status, danglings: 0, interpenetrations, solve_secs, unkept })
 }
 
 /// Fills a tile of a plane: some of `residents` meet while it is empty, then those who cross its borders are led there and

@@ -148,14 +148,14 @@ pub(super) fn tile(
     let tracks = Tracks::laid(&library, &domain, people);
     let left = (options.time_secs - start.elapsed().as_secs_f64()).max(0.0);
     let (tracks, rehearsal) = mended(scene, &passages, tracks, options.seed, Clock::new(left, progress));
-    let Rehearsal { played, faults, .. } = rehearsal;
-    let status = match faults.len() {
+    let interpenetrations = rehearsal.faults.len();
+    let status = match interpenetrations {
         0 => wishes(tracks.chains(), scene),
         n => Status::Imperfect(format!("{n} faults of the final bodies are left")),
     };
-    let crowd = bake(tracks.chains(), scene, options.seed, played);
+    let crowd = bake(tracks.chains(), scene, options.seed, rehearsal);
     let solve_secs = start.elapsed().as_secs_f64();
-    Ok(Outcome { crowd, status, danglings: 0, interpenetrations: faults.len(), solve_secs, unkept: None })
+    Ok(Outcome { crowd, status, danglings: 0, interpenetrations, solve_secs, unkept: None })
 }
 
 /// The scene of one tile: as many people as are on it at once.
