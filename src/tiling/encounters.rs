@@ -204,9 +204,8 @@ mod tests {
     fn all_encounters_are_found_whoever_moves_in_a_new_way() {
         let mut rng = ChaCha8Rng::seed_from_u64(3);
         for periodic in ["", "periodic = [\"x\", \"z\"]"] {
-            let text = format!(
-                "region = [[0, 0], [7, 0], [7, 7], [0, 7]]\nduration_secs = 10\ncharacters = 1\n{periodic}\n"
-            );
+            let text =
+                format!("region = [[0, 0], [7, 0], [7, 7], [0, 7]]\nduration_secs = 10\ncharacters = 1\n{periodic}\n");
             let scene = Scene::from_toml(&text).unwrap();
             let domain = Domain::new(&scene).unwrap();
             let mut bodies = walkers(&mut rng);

@@ -24,12 +24,18 @@ const DENSE_TOGETHER: f32 = 0.65;
 /// There people rather stand, and compactly.
 const DENSE_CALM: f32 = 0.25;
 pub(super) const COMPACT: f32 = 4.0;
+/// Where time comes round the way back to where somebody began takes room as well: so large a share, less where nobody finds
+/// room for so much.
+const LOOP_TOGETHER: f32 = 0.6;
+const LOOP_YIELD: f32 = 0.2;
 /// Of so many gatherings that are worked out at one person per m^2, so many are made: those that sweep the least ground.
 const RIVALS: f32 = 18.0;
 const BEST: usize = 3;
 /// Their number grows with this power of the density.
 const RIVALRY: i32 = 4;
 const MOST_RIVALS: usize = 200;
+/// Where time comes round there are so many at least.
+const LOOP_RIVALS: usize = 48;
 /// The part of the people who then stand close together, up to 1.2 and from 2 people per m^2.
 const STANDERS: [f32; 2] = [0.3, 0.75];
 const STAND_DENSITIES: [f32; 2] = [1.2, 2.0];
@@ -61,8 +67,13 @@ impl Engine<'_> {
             return;
         }
         let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
-        let dense = is_dense(self.scene);
-        let least = if dense { DENSE_TOGETHER } else { 0.0 };
+        let loops = self.crew.tracks.domain.cycle.loops();
+        let rivals = rivals(self.scene, loops);
+        let mut least = match is_dense(self.scene) {
+            true => DENSE_TOGETHER,
+            false if loops => LOOP_TOGETHER,
+            false => 0.0,
+        };
         let (mut swept, mut failures) = (Swept::of(&self.crew.tracks), 0);
         while self.crew.tracks.company() < wish && failures < GATHER_PATIENCE && self.goes_on(Phase::Seed) {
             let (left, tracks) = (self.people_left(), &self.crew.tracks);
@@ -70,19 +81,22 @@ impl Engine<'_> {
             if left < 2 || need > HOPELESS {
                 break;
             }
-            let count = if dense { rivals(self.scene) } else { self.crew.batch.min(left.div_ceil(2)) };
+            let count = rivals.unwrap_or(self.crew.batch.min(left.div_ceil(2)));
             let wishes: Vec<Wish> = (0..count).map(|_| self.plan.draw(need.max(least))).collect();
             let propose =
                 |i: usize, draft: &mut Draft, rng: &mut ChaCha8Rng| gather(draft, passages, wishes[i], taste, rng);
             let wanted = |tracks: &Tracks, change: &Change| {
                 tracks.tracks.len() + change.newcomers() <= most && tracks.company() < wish
             };
-            let made = match dense {
-                true => self.crew.work_best((count, BEST), &mut swept, propose, wanted),
-                false => self.crew.work(count, propose, wanted),
+            let made = match rivals {
+                Some(_) => self.crew.work_best((count, BEST), &mut swept, propose, wanted),
+                None => self.crew.work(count, propose, wanted),
             };
             self.plan.learn(&wishes, &made);
             failures = if made.contains(&true) { 0 } else { failures + made.len() };
+            if failures >= GATHER_PATIENCE && loops && least > 0.0 {
+                (least, failures) = (least - LOOP_YIELD, 0);
+            }
         }
     }
 
@@ -152,9 +166,11 @@ pub(super) fn is_dense(scene: &Scene) -> bool {
     density(scene) > DENSE
 }
 
-/// How many gatherings vie for room.
-fn rivals(scene: &Scene) -> usize {
-    ((RIVALS * density(scene).powi(RIVALRY)) as usize).clamp(BEST, MOST_RIVALS)
+/// How many gatherings vie for room, where it is scarce.
+fn rivals(scene: &Scene, loops: bool) -> Option<usize> {
+    let where_dense = || ((RIVALS * density(scene).powi(RIVALRY)) as usize).clamp(BEST, MOST_RIVALS);
+    let dense = is_dense(scene).then(where_dense);
+    if loops { Some(dense.unwrap_or(0).max(LOOP_RIVALS)) } else { dense }
 }
 
 /// People per m^2.
