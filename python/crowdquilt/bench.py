@@ -22,19 +22,20 @@ Say = Callable[[str], None]
 
 
 def tiling(seeds: int, say: Say, patches: PatchSet | None = None) -> list[Row]:
-    """The paper's scenes, denser ones and larger ones; with another patch set only those that any set can play."""
-    rows = []
+    """The paper's scenes, denser ones and larger ones; with another patch set those that it can play.
+
+    The published number of people is reached with so many patches by any set; the samples' one is given more people.
+    """
+    published = patches is not None
     if patches is None:
         with tempfile.TemporaryDirectory() as folder:
             samples.write(Path(folder), 1)
             patches = patch.cut(Path(folder))
-        rows += [found for scene in STATIC for found in static(scene, patches, seeds, say)]
-        rows += [found for scene in EXAMPLES for found in example(scene, patches, seeds, say)]
-        rows += repeating(patches, seeds, say)
-        rows += planes(patches, say)
-        rows += growth(patches, say)
-    else:
-        rows += [found for scene in STATIC for found in static(scene, patches, seeds, say, published=True)]
+    rows = [found for scene in STATIC for found in static(scene, patches, seeds, say, published)]
+    rows += [found for scene in EXAMPLES for found in example(scene, patches, seeds, say)]
+    rows += repeating(patches, seeds, say)
+    rows += planes(patches, say)
+    rows += growth(patches, say)
     return [row("tiling", "kinds to choose from", len(patches), "", 43, PAPER), *rows]
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from statistics import median
 
 from crowdquilt import check
-from crowdquilt._core import Outcome, PatchSet, Scene, tile
+from crowdquilt._core import CrowdquiltError, Outcome, PatchSet, Scene, tile
 from crowdquilt.bench_row import Row, row
 
 PAPER = "Hyun et al. 2013, table 1 and section 7, 2.93 GHz Core i7"
@@ -114,12 +114,16 @@ def static(scene: Static, patches: PatchSet, seeds: int, say: Say, published: bo
 
 
 def example(scene: Example, patches: PatchSet, seeds: int, say: Say) -> list[Row]:
-    """The figures of an example scene; none where the repository's examples are not at hand."""
+    """The figures of an example scene; none where the repository's examples are not at hand or the set lacks its labels."""
     file = SCENES / f"{scene.row}.toml"
     if not file.exists():
         say(f"tiling: {scene.row}: skipped, {file} is not there")
         return []
-    made = runs(Scene.load(file), patches, seeds)
+    try:
+        made = runs(Scene.load(file), patches, seeds)
+    except CrowdquiltError as problem:
+        say(f"tiling: {scene.row}: skipped, {problem}")
+        return []
     figures = figures_of(scene, made, "")
     if scene.row == "hopping":
         figures.append(figure(scene.row, "bumps, fewest", min(instances_with(r.outcome, {"bump"}) for r in made)))

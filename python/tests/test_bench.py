@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from pathlib import Path
 
 import pytest
 
@@ -52,6 +53,19 @@ def test_rows_are_measured_on_the_scene(monkeypatch: pytest.MonkeyPatch) -> None
     assert rows["area-growth: 5 x 5 m, per character"].ours > 0
     assert rows["area-growth: 5 x 5 m, one thread / two"].ours > 0
     assert rows["area-growth: 5 x 5 m, perfect and checked"].ours in (0, 1)
+
+
+def test_a_scene_that_a_set_cannot_play_is_skipped_with_the_reason(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, patches: Path
+) -> None:
+    text = (bench_tiling.SCENES / "hopping.toml").read_text()
+    (tmp_path / "hopping.toml").write_text(text.replace("bump", "somersault"))
+    monkeypatch.setattr(bench_tiling, "SCENES", tmp_path)
+    lines: list[str] = []
+    assert bench_tiling.example(bench_tiling.Example("hopping"), cq.PatchSet.load(patches), 1, lines.append) == []
+    assert len(lines) == 1 and lines[0].startswith("tiling: hopping: skipped, ") and "somersault" in lines[0]
+    assert bench_tiling.example(bench_tiling.Example("boxes"), cq.PatchSet.load(patches), 1, lines.append) == []
+    assert lines[1].endswith("boxes.toml is not there")
 
 
 def test_row_fields() -> None:
