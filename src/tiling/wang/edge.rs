@@ -26,8 +26,8 @@ use crate::tiling::{Progress, Scene, Wang};
 const CROSSING: f32 = 0.1;
 /// So many people as are elsewhere on a strip of this width, metres, live on an edge.
 const DWELLING: f32 = 2.0;
-/// How far from the border their strip reaches, in sides of a tile: not everywhere as far, so that where it ends is not seen.
-const REACH: Range<f32> = 0.14..0.28;
+/// How far from the border their strip reaches, metres: not everywhere as far, so that where it ends is not seen.
+const REACH: Range<f32> = 1.4..2.8;
 /// Crowds that are tried for an edge until one has room for all and the company that is wished for.
 const SEEDS: u64 = 6;
 
@@ -86,7 +86,7 @@ impl Edges {
 
 /// A strip along an edge. Where edges meet it ends in a right angle at most, as the strips of the others there do.
 fn strip(across: Across, side: f32, rng: &mut ChaCha8Rng) -> Polygon {
-    let mut reach = || side * rng.random_range(REACH);
+    let mut reach = || rng.random_range(REACH);
     let [a, b, c, d] = [reach(), reach(), reach(), reach()];
     let outline = [(0.0, 0.0), (a, -a), (side - b, -b), (side, 0.0), (side - c, c), (d, d)];
     let corners = outline.map(|(along, beyond)| on_edge(across, along, beyond));

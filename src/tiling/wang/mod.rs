@@ -1,9 +1,9 @@
 //! Wang tiles: any size of plane is covered by tiles that meet where their edges have one colour, in constant time each.
 //!
-//! An edge's colour says who crosses it, where, when and which way (`ribbon.rs`). A tile leads these people from and to its
-//! borders and is filled like any scene; nobody else comes near its borders (`tile.rs`). Which tile lies where follows from
-//! a hash of the place (`plane.rs`), so that there is no period. Laid tiles are chained at their borders (`lay.rs`) and
-//! made into bodies whole.
+//! An edge's colour says who lives on it and who crosses it, where, when and which way (`edge.rs`, `ribbon.rs`). A tile leads
+//! these people from and to its borders and is filled like any scene; nobody else comes near its borders (`tile.rs`). Which
+//! tile lies where follows from a hash of the place (`plane.rs`), so that there is no period. Laid tiles are chained at
+//! their borders (`lay.rs`) and made into bodies whole.
 
 mod edge;
 mod lay;

@@ -103,8 +103,8 @@ pub(super) fn ribbons(
 
 fn no_room(side: f32, count: usize) -> Error {
     let problem = format!(
-        "expected room for {count} people to cross each edge of {side} m without meeting, found none; make tiles larger, \
-         or colours or people fewer"
+        "expected room for {count} people to cross each edge of {side} m without meeting, found none; make tiles larger \
+         or people fewer"
     );
     Error::invalid("scene", "wang", problem)
 }
