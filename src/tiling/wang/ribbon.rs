@@ -85,12 +85,12 @@ pub(super) fn ribbons(
     (across, side, count): (Across, f32, usize),
     seed: u64,
 ) -> Result<Vec<Crossing>> {
-    let walks = walks(library);
+    let (walks, others): (Vec<&Move>, Vec<&Move>) = light_moves(library).into_iter().partition(|m| is_brisk(m));
     if walks.is_empty() {
         let problem = "expected a kind of one person who walks with empty hands, to cross edges of tiles; found none";
         return Err(Error::invalid("patch set", "kinds", problem));
     }
-    let drawing = Drawing { library, place: Place::new(one, across, side)?, walks, side, across };
+    let drawing = Drawing { library, place: Place::new(one, across, side)?, walks, others, side, across };
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut ribbons: Vec<Crossing> = Vec::with_capacity(count);
     for k in 0..count {
@@ -114,16 +114,15 @@ fn is_brisk(m: &Move) -> bool {
     m.speed > BRISK && m.askew < ASKEW
 }
 
-/// All walks ahead with empty hands.
-fn walks<'l>(library: &'l Library) -> Vec<&'l Move> {
-    let light = |m: &Move| {
+/// What people do alone with empty hands, on the ground.
+fn light_moves<'l>(library: &'l Library) -> Vec<&'l Move> {
+    let light = |m: &&Move| {
         let role = &library.roles[m.role as usize];
         ![role.entry_group, role.exit_group].iter().any(|&g| library.laden[g as usize])
             && !role.leaves_box()
             && role.leap.is_none()
     };
-    let fits = |m: &&Move| is_brisk(m) && light(m);
-    library.forward.iter().flatten().filter(fits).collect()
+    library.forward.iter().flatten().filter(light).collect()
 }
 
 /// The square that a ribbon keeps within, and its halves before and beyond the edge.
@@ -149,12 +148,14 @@ impl Place {
 struct Drawing<'a> {
     library: &'a Library<'a>,
     place: Place,
+    /// Walks straight ahead, and all else, of which something may have to come between two walks.
     walks: Vec<&'a Move>,
+    others: Vec<&'a Move>,
     side: f32,
     across: Across,
 }
 
-impl Drawing<'_> {
+impl<'a> Drawing<'a> {
     /// Somebody who crosses somewhere, some time, if that is possible as drawn.
     fn crossing(&self, forward: bool, rng: &mut ChaCha8Rng) -> Option<Crossing> {
         let roles = self.chain(rng);
@@ -209,14 +210,15 @@ impl Drawing<'_> {
     }
 
     /// Walks that follow each other, long enough if there are such.
-    fn chain(&self, rng: &mut ChaCha8Rng) -> Vec<&Move> {
+    fn chain(&self, rng: &mut ChaCha8Rng) -> Vec<&'a Move> {
         let mut chain = vec![*self.walks.choose(rng).expect("some walk")];
         let mut ticks = chain[0].ticks;
         while ticks < LONG && chain.len() < MOST_PIECES {
             let group = chain[chain.len() - 1].group;
             let follows = |m: &&&Move| self.library.roles[m.role as usize].entry_group == group;
-            let all: Vec<&Move> = self.walks.iter().filter(follows).copied().collect();
-            let Some(&next) = all.choose(rng) else { break };
+            let following = |moves: &[&'a Move]| moves.iter().filter(follows).copied().collect::<Vec<_>>();
+            let next = |moves, rng: &mut ChaCha8Rng| following(moves).choose(rng).copied();
+            let Some(next) = next(&self.walks, rng).or_else(|| next(&self.others, rng)) else { break };
             chain.push(next);
             ticks += next.ticks;
         }
