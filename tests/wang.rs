@@ -124,5 +124,5 @@ fn all_problems_of_a_file_are_told_with_their_lines() {
 fn the_example_is_what_it_says() {
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenes/wang.toml");
     let scene = Scene::load(&file).unwrap();
-    assert_eq!((scene.characters, scene.wang), (4000, Some(Wang { tile: 10.0, colours: 2, variants: 4 })));
+    assert_eq!((scene.characters, scene.wang), (4000, Some(Wang { tile: 10.0, colours: 4, variants: 2 })));
 }

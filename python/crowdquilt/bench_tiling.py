@@ -284,11 +284,14 @@ def planes(patches: PatchSet, say: Say, characters: int = 40) -> list[Row]:
         outcome = tile(Scene.from_toml(text), patches, seed=1, time=3600.0)
         ok = outcome.status == "perfect" and check.check(outcome.crowd).ok
         name = f"{side} x {side} m"
+        share = check.summary(outcome.crowd).multi_person_share
         figures += [
             figure("wang", f"{name}: characters", len(outcome.crowd)),
             figure("wang", f"{name}: seconds", outcome.solve_secs, "s"),
             figure("wang", f"{name}: per tile", outcome.solve_secs / tiles**2, "s"),
+            figure("wang", f"{name}: share of time in patches of two or more", share),
             figure("wang", f"{name}: perfect and checked", float(ok)),
         ]
-        say(f"tiling: wang {name}: {outcome.solve_secs:.1f} s, {'perfect and checked' if ok else outcome.reason}")
+        verdict = "perfect and checked" if ok else outcome.reason
+        say(f"tiling: wang {name}: {outcome.solve_secs:.1f} s, {100 * share:.1f} % together, {verdict}")
     return figures

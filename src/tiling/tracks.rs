@@ -122,17 +122,20 @@ impl<'a> Tracks<'a> {
         id < self.fixed
     }
 
-    /// Puts pieces in that nothing moves, before all others.
-    pub fn fix(&mut self, pieces: impl IntoIterator<Item = Piece>) -> Vec<PieceId> {
-        let pieces = pieces.into_iter();
-        let ids: Vec<PieceId> = pieces.map(|piece| self.put(piece)).collect();
-        self.fixed += ids.len() as PieceId;
-        ids
-    }
-
-    /// Adds somebody whose pieces are in already.
-    pub fn enter(&mut self, ids: Vec<PieceId>) {
-        self.set(NEWCOMER, ids);
+    /// Puts people's pieces in that nothing moves, before all others. Those of one instance share a number; it is replaced.
+    pub fn fix<'p>(&mut self, people: impl IntoIterator<Item = &'p Vec<Piece>>) -> Vec<Vec<PieceId>> {
+        let mut numbers = Vec::new();
+        let mut fix = |piece: &Piece| {
+            let mut piece = piece.clone();
+            piece.instance = self.number(&mut numbers, piece.instance);
+            for instance in [&mut piece.company.from, &mut piece.company.to].into_iter().filter(|i| **i != NO_INSTANCE)
+            {
+                *instance = self.number(&mut numbers, *instance);
+            }
+            self.fixed += 1;
+            self.occupancy.insert(piece)
+        };
+        people.into_iter().map(|pieces| pieces.iter().map(&mut fix).collect()).collect()
     }
 
     /// Puts a piece in as it is, as an instance of its own.
@@ -147,8 +150,7 @@ impl<'a> Tracks<'a> {
         for pieces in people {
             tracks.next_instance = pieces.iter().map(|p| p.instance + 1).fold(tracks.next_instance, u32::max);
             let ids: Vec<PieceId> = pieces.into_iter().map(|piece| tracks.occupancy.keep(piece)).collect();
-            tracks.company += tracks.company_of(&ids);
-            tracks.set(NEWCOMER, ids);
+            tracks.enter(ids);
         }
         tracks
     }
@@ -272,8 +274,7 @@ impl<'a> Tracks<'a> {
             }
             ids.push(self.occupancy.insert(piece));
         }
-        self.company += self.company_of(&ids);
-        self.set(NEWCOMER, ids);
+        self.enter(ids);
         true
     }
 
@@ -310,6 +311,12 @@ impl<'a> Tracks<'a> {
         }
         self.tracks[track] = pieces;
         self.stamps[track] = self.version;
+    }
+
+    /// Adds somebody whose pieces are in already.
+    fn enter(&mut self, ids: Vec<PieceId>) {
+        self.company += self.company_of(&ids);
+        self.set(NEWCOMER, ids);
     }
 
     fn company_of(&self, pieces: &[PieceId]) -> usize {

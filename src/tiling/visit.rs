@@ -195,7 +195,7 @@ type Open = [Vec<usize>; 2];
 impl Hosting<'_> {
     fn visits(&self, library: &Library, domain: &Domain, scene: &Scene, rng: &mut ChaCha8Rng) -> Option<Vec<Visit>> {
         let mut tracks = Tracks::new(library, domain);
-        let _ = tracks.fix(self.crossings.iter().flatten().cloned());
+        let _ = tracks.fix(self.crossings.iter());
         let mut desk = Desk::default();
         let mut draft = Draft::new(&tracks, &mut desk);
         let lives = self.lives(&mut draft, rng)?;

@@ -23,15 +23,15 @@ impl Engine<'_> {
         let mut rehearsal = Rehearsal::new(&self.crew.tracks);
         self.mend(&mut rehearsal);
         for _ in 0..refills {
-            let share = self.crew.tracks.multi_person_share();
-            if share >= self.scene.interaction || !rehearsal.faults.is_empty() {
+            let (company, needed) = (self.crew.tracks.company(), self.company_of(self.crew.tracks.presence(), 1.0));
+            if company as f32 >= needed || !rehearsal.faults.is_empty() {
                 break;
             }
             // People may have been led other ways even if no patch found room.
             self.enrich(self.patience);
             rehearsal.repeat(&self.crew.tracks);
             self.mend(&mut rehearsal);
-            if self.crew.tracks.multi_person_share() <= share {
+            if self.crew.tracks.company() <= company {
                 break;
             }
         }

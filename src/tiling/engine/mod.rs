@@ -150,7 +150,37 @@ fn engine(
     Ok(Outcome { crowd, status, danglings: 0, interpenetrations, solve_secs, unkept })
 }
 
-/// Fills a tile of a plane: some of `residents` meet while it is empty, then those who cross its borders are led there and
+/// What those bring along who cross a tile's borders or live on them.
+pub(super) struct Shared<'c> {
+    /// Who is to come or to go.
+    pub crossers: &'c [Crosser],
+    /// Ticks that they are to be in this tile, the border included.
+    pub crossing: usize,
+    /// Ticks in patches of several people that are wished for besides, since those on its borders have fewer; negative if
+    /// they have more.
+    pub lack: f32,
+}
+
+/// Fills the strip along an edge between tiles, which others cross for so many ticks in all.
+pub(super) fn fill_edge<'a>(
+    scene: &'a Scene,
+    passages: &'a Passages<'a>,
+    tracks: Tracks<'a>,
+    crossing: usize,
+    seed: u64,
+    clock: Clock<'a>,
+) -> Tracks<'a> {
+    let crew = Crew::new(tracks, scene.region.area(), seed);
+    let mut engine = Engine::new(scene, passages, crew, seed, clock);
+    engine.visiting = crossing;
+    engine.gather();
+    engine.stand();
+    engine.add_the_others();
+    engine.finish(REFILLS);
+    engine.crew.tracks
+}
+
+/// Fills a tile of a plane: some of `residents` meet while there is room, then those who cross its borders are led there and
 /// from there, stopped or not, then the others are added as anywhere.
 ///
 /// # Errors
@@ -159,21 +189,22 @@ pub(super) fn fill<'a>(
     scene: &'a Scene,
     passages: &'a Passages<'a>,
     tracks: Tracks<'a>,
-    (crossers, residents): (&[Crosser], usize),
+    (shared, residents): (&Shared, usize),
     (seed, picky): (u64, bool),
     clock: Clock<'a>,
 ) -> std::result::Result<Tracks<'a>, Vec<Gap>> {
     let crew = Crew::new(tracks, scene.region.area(), seed);
     let mut engine = Engine::new(scene, passages, crew, seed, clock);
-    // Half the life of who crosses a border is here, or some more.
-    (engine.most, engine.visitors, engine.patience) = (residents, crossers.len() * 5 / 8, TILE_PATIENCE);
+    (engine.most, engine.visiting, engine.lack) = (residents, shared.crossing, shared.lack);
     engine.gather();
     let enough = TILE_COMPANY * engine.company_wish() as f32;
     if picky && (engine.crew.tracks.company() as f32) < enough && engine.goes_on(Phase::Seed) {
         return Err(vec![]);
     }
-    engine.cross(crossers.iter().collect())?;
-    (engine.most, engine.visitors) = (crossers.len() + residents, 0);
+    engine.cross(shared.crossers.iter().collect())?;
+    (engine.most, engine.visiting) = (residents + shared.crossers.len(), 0);
+    // What is short now is dear, and many tiles have a little more than they need.
+    (engine.above, engine.patience) = (1.0, TILE_PATIENCE);
     engine.stand();
     engine.add_the_others();
     engine.finish(TILE_REFILLS);
@@ -218,10 +249,14 @@ struct Engine<'a> {
     clock: Clock<'a>,
     /// Most people: those who are there anyway, those of the teams, and those who came in.
     most: usize,
-    /// Whole lives of others who are still to come.
-    visitors: usize,
+    /// Ticks of others who are still to come.
+    visiting: usize,
+    /// Ticks in patches of several people that are wished for besides, or fewer.
+    lack: f32,
     /// Failed tries per person in a row after which no more patches of several people are wished for.
     patience: usize,
+    /// How much more company is aimed at than is wished for.
+    above: f32,
     agenda: Agenda,
     keeper: Keeper<'a>,
     /// Seconds that earlier runs have taken.
@@ -245,8 +280,10 @@ impl<'a> Engine<'a> {
             crew,
             clock,
             most: scene.characters,
-            visitors: 0,
+            visiting: 0,
+            lack: 0.0,
             patience: ENRICH_PATIENCE,
+            above: ABOVE_WISH,
             agenda: Agenda::default(),
             keeper: Keeper::none(),
             before: 0.0,
@@ -308,9 +345,14 @@ impl<'a> Engine<'a> {
 
     /// Ticks in patches of several people that are aimed at when everybody is there.
     fn company_wish(&self) -> usize {
-        let ticks = self.crew.tracks.presence()
-            + (self.people_left() + self.visitors) * self.crew.tracks.domain.horizon as usize;
-        (self.scene.interaction * ABOVE_WISH * ticks as f32) as usize
+        let to_come = self.people_left() * self.crew.tracks.domain.horizon as usize + self.visiting;
+        self.company_of(self.crew.tracks.presence() + to_come, self.above) as usize
+    }
+
+    /// Ticks in patches of several people if those who are there for some ticks are together as long as wished for, or `above`
+    /// times as long.
+    fn company_of(&self, presence: usize, above: f32) -> f32 {
+        self.scene.interaction * above * presence as f32 + self.lack
     }
 
     fn people_left(&self) -> usize {

@@ -10,9 +10,9 @@ use crate::tiling::wang::{LARGEST_TILE, SMALLEST_TILE};
 
 /// Most colours of edges and variants of tiles, and how many there are unless a scene says it.
 const MAX_COLOURS: usize = 8;
-const COLOURS: usize = 2;
+const COLOURS: usize = 4;
 const MAX_VARIANTS: usize = 64;
-const VARIANTS: usize = 4;
+const VARIANTS: usize = 2;
 
 /// Most people that one source lets in.
 const MAX_ARRIVALS: usize = 100_000;

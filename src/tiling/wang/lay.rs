@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use glam::Vec2;
 
+use super::edge::Edges;
 use super::plane::{Key, Plane};
-use super::ribbon::{Crossing, Ribbons};
 use super::tile::{Gap, Stay, Tile, UPPER_SIDES, beyond, edge_of, of_side};
 use crate::tiling::bridge::NO_INSTANCE;
 use crate::tiling::piece::{Company, Piece, Shift};
@@ -17,7 +17,7 @@ pub(super) struct Layout<'a> {
     /// All tiles that it has.
     pub tiles: &'a BTreeMap<Key, Tile>,
     /// What happens at edges.
-    pub ribbons: &'a Ribbons,
+    pub edges: &'a Edges,
     /// Side of a tile, metres.
     pub side: f32,
 }
@@ -36,12 +36,14 @@ impl Layout<'_> {
         let starts = |&at: &[i64; 2]| self.tile(at).stays.iter().filter(|s| s.from.is_none()).map(move |s| (at, s));
         let mut people: Vec<Vec<Piece>> =
             places.iter().flat_map(starts).map(|(at, stay)| self.life(at, stay, &bases, &mut numbers)).collect();
+        let mut base = numbers.start;
         // The upper borders of a tile are the lower ones of others.
         for (&at, side) in places.iter().flat_map(|at| UPPER_SIDES.map(|side| (at, side))) {
             let colour = self.plane.key(at).sides[side];
-            for dweller in colour.into_iter().flat_map(|colour| self.ribbons.dwellers(of_side(side).0, colour)) {
-                people.push(self.on_edge(at, side, dweller).zip(numbers.by_ref()).map(numbered).collect());
-            }
+            let Some(edge) = colour.map(|colour| self.edges.of(of_side(side).0, colour)) else { continue };
+            let place = self.plane.corner(at) + edge_of(side, self.side);
+            people.extend(edge.dwellers.iter().map(|life| life.iter().map(|p| laid(p, place, base)).collect()));
+            base += edge.instances;
         }
         people
     }
@@ -73,15 +75,9 @@ impl Layout<'_> {
     /// The patches that lead across a border.
     fn crossing(&self, at: [i64; 2], gap: Gap) -> impl Iterator<Item = Piece> {
         let colour = self.plane.key(at).sides[gap.side].expect("nobody crosses the rim");
-        let mut all = self.ribbons.of(of_side(gap.side).0, colour);
-        let crossing = all.nth(gap.number).expect("as many as the tile knows");
-        self.on_edge(at, gap.side, crossing)
-    }
-
-    /// What somebody does on an edge of a tile.
-    fn on_edge<'s>(&self, at: [i64; 2], side: usize, of: &'s Crossing) -> impl Iterator<Item = Piece> + use<'s> {
-        let place = self.plane.corner(at) + edge_of(side, self.side);
-        of.pieces.iter().map(move |p| p.clone().shifted(Shift { place, ticks: 0 }))
+        let crossing = &self.edges.of(of_side(gap.side).0, colour).crossings[gap.number];
+        let place = self.plane.corner(at) + edge_of(gap.side, self.side);
+        crossing.pieces.iter().map(move |p| p.clone().shifted(Shift { place, ticks: 0 }))
     }
 }
 
@@ -94,13 +90,13 @@ fn step([i, k]: [i64; 2], side: usize) -> [i64; 2] {
     [[i - 1, k], [i + 1, k], [i, k - 1], [i, k + 1]][side]
 }
 
-/// A piece of a tile that is laid somewhere.
-fn laid(piece: &Piece, corner: Vec2, base: u32) -> Piece {
+/// A piece of a tile or an edge that is laid somewhere.
+fn laid(piece: &Piece, place: Vec2, base: u32) -> Piece {
     let number = |instance: u32| if instance == NO_INSTANCE { instance } else { instance + base };
     let Company { from, to } = piece.company;
     Piece {
         instance: number(piece.instance),
         company: Company { from: number(from), to: number(to) },
-        ..piece.clone().shifted(Shift { place: corner, ticks: 0 })
+        ..piece.clone().shifted(Shift { place, ticks: 0 })
     }
 }

@@ -1,10 +1,11 @@
 //! Wang tiles: any size of plane is covered by tiles that meet where their edges have one colour, in constant time each.
 //!
-//! An edge's colour says who crosses it, where, when and which way (`ribbon.rs`). A tile leads these people from and to its
-//! borders and is filled like any scene; nobody else comes near its borders (`tile.rs`). Which tile lies where follows from
-//! a hash of the place (`plane.rs`), so that there is no period. Laid tiles are chained at their borders (`lay.rs`) and
-//! made into bodies whole.
+//! An edge's colour says who lives on it and who crosses it, where, when and which way (`edge.rs`, `ribbon.rs`). A tile leads
+//! these people from and to its borders and is filled like any scene; nobody else comes near its borders (`tile.rs`). Which
+//! tile lies where follows from a hash of the place (`plane.rs`), so that there is no period. Laid tiles are chained at
+//! their borders (`lay.rs`) and made into bodies whole.
 
+mod edge;
 mod lay;
 mod plane;
 mod ribbon;
@@ -15,9 +16,9 @@ use std::collections::BTreeMap;
 use glam::Vec2;
 use rayon::prelude::*;
 
+use self::edge::Edges;
 use self::lay::Layout;
 use self::plane::{Key, Plane};
-use self::ribbon::Ribbons;
 use self::tile::{Tile, Workshop};
 use super::bake::bake;
 use super::clock::Clock;
@@ -45,8 +46,6 @@ pub(super) const LARGEST_TILE: f64 = 100.0;
 const WHOLE: f32 = 1e-3;
 /// Most tiles of a region.
 const MOST_TILES: f32 = 10_000.0;
-/// People who cross an edge, per person on a tile.
-const CROSSING: f32 = 0.15;
 /// Tiles are built while this share of the time is not over.
 const BUILDING: f64 = 0.8;
 
@@ -133,18 +132,18 @@ pub(super) fn tile(
     passages.work_out_all();
     let plane = Plane::new(scene, wang, options.seed);
     let one = one_tile(scene, wang);
-    let ribbons = ribbons(&library, &one, wang, options.seed)?;
+    let edges = Edges::new(&passages, &library, &one, wang, (options.seed, options.time_secs * BUILDING))?;
     let shop = Workshop {
         scene: &one,
         library: &library,
         passages: &passages,
-        ribbons: &ribbons,
+        edges: &edges,
         side: wang.tile,
         seed: options.seed,
     };
     let tiles = build(&shop, plane, options, progress)?;
     let domain = Domain::new(scene)?;
-    let people = Layout { plane, tiles: &tiles, ribbons: &ribbons, side: wang.tile }.people();
+    let people = Layout { plane, tiles: &tiles, edges: &edges, side: wang.tile }.people();
     let tracks = Tracks::laid(&library, &domain, people);
     let left = (options.time_secs - start.elapsed().as_secs_f64()).max(0.0);
     let (tracks, rehearsal) = mended(scene, &passages, tracks, options.seed, Clock::new(left, progress));
@@ -164,12 +163,6 @@ fn one_tile(scene: &Scene, wang: Wang) -> Scene {
     let characters = (scene.characters as f32 / tiles).ceil() as usize;
     let region = Polygon::rectangle(Vec2::ZERO, Vec2::splat(wang.tile));
     Scene { region, characters, wang: None, ..scene.clone() }
-}
-
-/// Who crosses edges: an even number, so that as many go as come; nobody where there are hardly any people.
-fn ribbons(library: &Library, one: &Scene, wang: Wang, seed: u64) -> Result<Ribbons> {
-    let count = 2 * ((one.characters as f32 * CROSSING / 2.0).round() as usize).max(usize::from(one.characters >= 4));
-    Ribbons::new(library, one, (wang.tile, wang.colours, count), seed)
 }
 
 /// All tiles that a plane has, each once.

@@ -1,6 +1,6 @@
 //! Ribbons: how people cross an edge of some colour. Chains of walks of one person each, laid rigidly across the border,
-//! the same wherever the colour is met. They are far enough from each other, and from those of all edges that may ever
-//! be near, that any tiles whose colours agree fit together.
+//! the same wherever the colour is met. They are far enough from each other, and keep within the square whose corners are the
+//! edge's ends and the middles of the tiles that it joins, so that any tiles whose colours agree fit together.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -9,14 +9,14 @@ use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::plane::{Across, mix};
+use super::plane::Across;
 use crate::geom::{Ground, Polygon};
 use crate::tiling::Scene;
 use crate::tiling::bridge::{Bridge, Goal, NO_INSTANCE, Port, Taste};
 use crate::tiling::domain::Domain;
 use crate::tiling::draft::{Desk, Draft};
 use crate::tiling::library::{Library, Move};
-use crate::tiling::piece::{Company, Piece, Shift, depth, footprint, world_discs};
+use crate::tiling::piece::{Company, Piece, depth};
 use crate::tiling::tracks::Tracks;
 use crate::tiling::tryout::is_clean;
 use crate::{Error, Result};
@@ -25,21 +25,17 @@ use crate::{Error, Result};
 const LONG: i32 = 84;
 /// Most patches of a ribbon.
 const MOST_PIECES: usize = 16;
-/// Some linger at the border for up to so many ticks more, so that it is no emptier there than elsewhere.
-const LINGERERS: f32 = 0.8;
-const LINGER: i32 = 240;
 /// How far from the border the middle of a way across is, metres.
 const BESIDE: f32 = 0.4;
 /// Ticks of a ribbon that are seen at least.
 const SEEN: i32 = 20;
-/// Who crosses walks faster than this, m/s, and ahead, or stands.
+/// Who crosses walks faster than this, m/s, and ahead.
 const BRISK: f32 = 0.6;
 const ASKEW: f32 = 0.3;
 /// How far from straight across people go, radians.
 const ASLANT: f32 = 0.5;
-/// Room between a ribbon's ends and the border, and between it and the tiles that it does not join, metres.
+/// Room between a ribbon's ends and the border, metres.
 const END_ROOM: f32 = 0.15;
-const SIDE_ROOM: f32 = 0.1;
 /// People who cross at the same time are at least this far apart, metres.
 const APART: f32 = 0.9;
 /// Ticks of a way to and from a ribbon that are kept free of all others.
@@ -48,15 +44,7 @@ const TASTE: Taste = Taste { calm: 1.0, compact: 0.0, expansions: 60 };
 /// Ways across that are tried for each that is wanted.
 const TRIES: usize = 2000;
 
-/// So many people per metre of an edge and per person per m^2 stand on it all the time: others keep off it, and it would
-/// be seen.
-const DWELLERS: f32 = 0.5;
-/// How far from the border they stand, how far they move about, metres, and how slow their patches are, m/s.
-const NEAR: f32 = 0.35;
-const ASTIR: f32 = 0.4;
-const CALM: f32 = 0.25;
-
-/// Somebody who crosses an edge whose lower end is at the origin, or stands on it all the time.
+/// Somebody who crosses an edge whose lower end is at the origin.
 pub(super) struct Crossing {
     /// The patches, in order of time.
     pub pieces: Vec<Piece>,
@@ -64,20 +52,16 @@ pub(super) struct Crossing {
     pub leads: [Vec<Piece>; 2],
     /// True if towards larger coordinates.
     pub forward: bool,
-    /// True if they stand.
-    dwells: bool,
-    across: Across,
-    colour: u32,
 }
 
 impl Crossing {
-    fn all(&self) -> impl Iterator<Item = &Piece> + Clone {
+    /// The patches and the ways to and from them.
+    pub fn all(&self) -> impl Iterator<Item = &Piece> + Clone {
         self.pieces.iter().chain(self.leads.iter().flatten())
     }
 
-    fn meets(&self, other: &Self, by: Vec2, library: &Library) -> bool {
-        let moved = other.all().map(|p| p.clone().shifted(Shift { place: by, ticks: 0 }));
-        moved.into_iter().any(|q| self.all().any(|p| are_near(p, &q, library)))
+    fn meets(&self, other: &Self, library: &Library) -> bool {
+        self.all().any(|p| other.all().any(|q| are_near(p, q, library)))
     }
 }
 
@@ -91,87 +75,36 @@ fn are_near(a: &Piece, b: &Piece, library: &Library) -> bool {
     ticks.any(|tick| apart(tick) < APART || depth(library, a, b, tick).is_some())
 }
 
-/// All ways across all edges.
-pub(super) struct Ribbons {
-    all: Vec<Crossing>,
-}
-
-impl Ribbons {
-    /// For so many colours, so many people crossing each edge of a plane whose tiles are `side` metres wide.
-    ///
-    /// # Errors
-    /// There is no room for them.
-    pub fn new(library: &Library, one: &Scene, (side, colours, count): (f32, u32, usize), seed: u64) -> Result<Self> {
-        let mut ribbons = Self { all: vec![] };
-        let walks = walks(library);
-        if !walks.iter().any(|m| is_brisk(m)) {
-            let problem =
-                "expected a kind of one person who walks with empty hands, to cross edges of tiles; found none";
-            return Err(Error::invalid("patch set", "kinds", problem));
-        }
-        let grounds = Grounds::new(one, side)?;
-        let drawing = Drawing { library, grounds: &grounds, walks, side };
-        for (colour, across) in (0..colours).flat_map(|c| [(c, Across::X), (c, Across::Z)]) {
-            let mut rng = ChaCha8Rng::seed_from_u64(mix(mix(seed ^ u64::from(colour)) ^ across as u64));
-            for k in 0..count {
-                // Who lingers finds room less often: it is settled before.
-                let lingers = rng.random_range(0.0..1.0) < LINGERERS;
-                let linger = if lingers { rng.random_range(LINGER / 3..LINGER) } else { 0 };
-                let draw = |n: usize, rng: &mut ChaCha8Rng| {
-                    let length = LONG + if n < TRIES / 2 { linger } else { 0 };
-                    drawing.crossing((across, colour), k % 2 == 0, length, rng)
-                };
-                let fits = |c: &Crossing| ribbons.have_room(c, side, library);
-                let found = (0..TRIES).find_map(|n| draw(n, &mut rng).filter(fits));
-                ribbons.all.push(found.ok_or_else(|| no_room(side, count))?);
-            }
-        }
-        ribbons.settle(&drawing, one, colours, seed);
-        Ok(ribbons)
+/// So many ways across an edge of a plane of tiles each like `one`, `side` metres wide: as many one way as the other.
+///
+/// # Errors
+/// There is no room for them.
+pub(super) fn ribbons(
+    library: &Library,
+    one: &Scene,
+    (across, side, count): (Across, f32, usize),
+    seed: u64,
+) -> Result<Vec<Crossing>> {
+    let (walks, others): (Vec<&Move>, Vec<&Move>) = light_moves(library).into_iter().partition(|m| is_brisk(m));
+    if walks.is_empty() {
+        let problem = "expected a kind of one person who walks with empty hands, to cross edges of tiles; found none";
+        return Err(Error::invalid("patch set", "kinds", problem));
     }
-
-    /// Lets people stand on all edges, where there is room.
-    fn settle(&mut self, drawing: &Drawing, one: &Scene, colours: u32, seed: u64) {
-        let density = one.characters as f32 / one.region.area();
-        let count = (DWELLERS * density * drawing.side).round() as usize;
-        for (colour, across) in (0..colours).flat_map(|c| [(c, Across::X), (c, Across::Z)]) {
-            let mut rng = ChaCha8Rng::seed_from_u64(mix(mix(!seed ^ u64::from(colour)) ^ across as u64));
-            for _ in 0..count {
-                let fits = |c: &Crossing| self.have_room(c, drawing.side, drawing.library);
-                let found = (0..TRIES).find_map(|_| drawing.dweller((across, colour), &mut rng).filter(fits));
-                self.all.extend(found);
-            }
-        }
+    let drawing = Drawing { library, place: Place::new(one, across, side)?, walks, others, side, across };
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut ribbons: Vec<Crossing> = Vec::with_capacity(count);
+    for k in 0..count {
+        let fits = |c: &Crossing| ribbons.iter().all(|other| !c.meets(other, library));
+        let found = (0..TRIES).find_map(|_| drawing.crossing(k % 2 == 0, &mut rng).filter(fits));
+        ribbons.push(found.ok_or_else(|| no_room(side, count))?);
     }
-
-    /// The ways across an edge.
-    pub fn of(&self, across: Across, colour: u32) -> impl Iterator<Item = &Crossing> + Clone {
-        self.on(across, colour).filter(|c| !c.dwells)
-    }
-
-    /// Who stands on an edge.
-    pub fn dwellers(&self, across: Across, colour: u32) -> impl Iterator<Item = &Crossing> + Clone {
-        self.on(across, colour).filter(|c| c.dwells)
-    }
-
-    fn on(&self, across: Across, colour: u32) -> impl Iterator<Item = &Crossing> + Clone {
-        self.all.iter().filter(move |c| c.across == across && c.colour == colour)
-    }
-
-    /// True if nobody is ever near to one more, whatever colours the edges around have.
-    fn have_room(&self, new: &Crossing, side: f32, library: &Library) -> bool {
-        let offsets = || (0..9).map(|n| Vec2::new((n % 3 - 1) as f32, (n / 3 - 1) as f32) * side);
-        let is_other = |c: &Crossing, by: Vec2| by == Vec2::ZERO && c.across == new.across && c.colour != new.colour;
-        let clear = |c: &Crossing| offsets().all(|by| is_other(c, by) || !new.meets(c, by, library));
-        let own = offsets().filter(|&by| by != Vec2::ZERO).all(|by| !new.meets(new, by, library));
-        own && self.all.iter().all(clear)
-    }
+    Ok(ribbons)
 }
 
 fn no_room(side: f32, count: usize) -> Error {
     let problem = format!(
-        "expected room for {count} people to cross each edge of {side} m without meeting, found none; make tiles larger, \
-         or colours or people fewer"
+        "expected room for {count} people to cross each edge of {side} m without meeting, found none; make tiles larger \
+         or people fewer"
     );
     Error::invalid("scene", "wang", problem)
 }
@@ -181,57 +114,53 @@ fn is_brisk(m: &Move) -> bool {
     m.speed > BRISK && m.askew < ASKEW
 }
 
-/// All walks ahead, and what people do who stand, with empty hands.
-fn walks<'l>(library: &'l Library) -> Vec<&'l Move> {
-    let light = |m: &Move| {
+/// What people do alone with empty hands, on the ground.
+fn light_moves<'l>(library: &'l Library) -> Vec<&'l Move> {
+    let light = |m: &&Move| {
         let role = &library.roles[m.role as usize];
         ![role.entry_group, role.exit_group].iter().any(|&g| library.laden[g as usize])
             && !role.leaves_box()
             && role.leap.is_none()
     };
-    let fits = |m: &&Move| (m.speed < BRISK || m.askew < ASKEW) && light(m);
-    library.forward.iter().flatten().filter(fits).collect()
+    library.forward.iter().flatten().filter(light).collect()
 }
 
-/// Open ground, and the tiles before and beyond an edge, by axis.
-struct Grounds {
-    open: Domain,
-    tiles: [[Domain; 2]; 2],
+/// The square that a ribbon keeps within, and its halves before and beyond the edge.
+struct Place {
+    whole: Domain,
+    halves: [Domain; 2],
 }
 
-impl Grounds {
-    fn new(one: &Scene, side: f32) -> Result<Self> {
-        let domain = |low: Vec2, high: Vec2| {
-            Domain::new(&Scene { region: Polygon::rectangle(low * side, high * side), ..one.clone() })
+impl Place {
+    fn new(one: &Scene, across: Across, side: f32) -> Result<Self> {
+        let corner = |beyond: f32| on_edge(across, side * 0.5, side * beyond);
+        let (from, to) = (Vec2::ZERO, on_edge(across, side, 0.0));
+        let domain = |corners: &[Vec2]| {
+            let region = Polygon::new(corners.to_vec()).expect("corners that go round once");
+            Domain::new(&Scene { region, ..one.clone() })
         };
-        let tile = |low: Vec2| domain(low, low + 1.0);
-        Ok(Self {
-            open: domain(Vec2::NEG_ONE, Vec2::splat(2.0))?,
-            tiles: [[tile(Vec2::NEG_X)?, tile(Vec2::ZERO)?], [tile(Vec2::NEG_Y)?, tile(Vec2::ZERO)?]],
-        })
+        let halves = [domain(&[from, to, corner(-0.5)])?, domain(&[from, to, corner(0.5)])?];
+        Ok(Self { whole: domain(&[from, corner(-0.5), to, corner(0.5)])?, halves })
     }
 }
 
 /// What crossings are drawn from.
 struct Drawing<'a> {
     library: &'a Library<'a>,
-    grounds: &'a Grounds,
+    place: Place,
+    /// Walks straight ahead, and all else, of which something may have to come between two walks.
     walks: Vec<&'a Move>,
+    others: Vec<&'a Move>,
     side: f32,
+    across: Across,
 }
 
-impl Drawing<'_> {
+impl<'a> Drawing<'a> {
     /// Somebody who crosses somewhere, some time, if that is possible as drawn.
-    fn crossing(
-        &self,
-        (across, colour): (Across, u32),
-        forward: bool,
-        length: i32,
-        rng: &mut ChaCha8Rng,
-    ) -> Option<Crossing> {
-        let roles = self.chain(length, rng);
+    fn crossing(&self, forward: bool, rng: &mut ChaCha8Rng) -> Option<Crossing> {
+        let roles = self.chain(rng);
         let length: i32 = roles.iter().map(|m| m.ticks).sum();
-        let horizon = self.grounds.open.horizon;
+        let horizon = self.place.whole.horizon;
         if length < LONG.min(SEEN + horizon) {
             return None;
         }
@@ -243,25 +172,15 @@ impl Drawing<'_> {
         let middle = way.iter().find(|p| p.end - begin > length / 2)?;
         let middle = middle.path.at(middle.path.len() / 2).position;
         let leads = way.last()?.exit().position;
-        let heading = match across {
+        let heading = match self.across {
             Across::X => FRAC_PI_2,
             Across::Z => 0.0,
         };
         let heading = heading + aslant + if forward { 0.0 } else { PI } - leads.x.atan2(leads.y);
         let beside = rng.random_range(-BESIDE..BESIDE);
-        let on_border = match across {
-            Across::X => Vec2::new(beside, along),
-            Across::Z => Vec2::new(along, beside),
-        };
+        let on_border = on_edge(self.across, along, beside);
         let from = Ground::new(on_border - Ground::new(Vec2::ZERO, heading).apply(middle), heading);
-        let mut crossing = Crossing {
-            pieces: self.lay(&roles, from, begin),
-            leads: Default::default(),
-            forward,
-            dwells: false,
-            across,
-            colour,
-        };
+        let mut crossing = Crossing { pieces: self.lay(&roles, from, begin), leads: Default::default(), forward };
         if !self.is_across(&crossing) || !self.is_clean(&crossing) {
             return None;
         }
@@ -269,32 +188,9 @@ impl Drawing<'_> {
         Some(crossing)
     }
 
-    /// Somebody who stands somewhere on an edge from the beginning of time to its end, if that is possible as drawn.
-    fn dweller(&self, (across, colour): (Across, u32), rng: &mut ChaCha8Rng) -> Option<Crossing> {
-        let mut chain = vec![*self.walks.iter().filter(|m| m.speed < CALM).copied().collect::<Vec<_>>().choose(rng)?];
-        let begin = -rng.random_range(0..chain[0].ticks);
-        let mut end = begin + chain[0].ticks;
-        while end < self.grounds.open.horizon {
-            let group = chain[chain.len() - 1].group;
-            let follows = |m: &&&Move| m.speed < CALM && self.library.roles[m.role as usize].entry_group == group;
-            let next = *self.walks.iter().filter(follows).collect::<Vec<_>>().choose(rng)?;
-            chain.push(next);
-            end += next.ticks;
-        }
-        let (along, beside) = (rng.random_range(0.0..self.side), rng.random_range(-NEAR..NEAR));
-        let at = match across {
-            Across::X => Vec2::new(beside, along),
-            Across::Z => Vec2::new(along, beside),
-        };
-        let pieces = self.lay(&chain, Ground::new(at, rng.random_range(-PI..PI)), begin);
-        let stays = pieces.iter().all(|p| p.exit().position.distance(at) < ASTIR);
-        let crossing = Crossing { pieces, leads: Default::default(), forward: true, dwells: true, across, colour };
-        (stays && self.is_within(&crossing) && self.is_clean(&crossing)).then_some(crossing)
-    }
-
     /// A way to where a crossing begins, and one from where it ends.
     fn leads(&self, crossing: &Crossing, rng: &mut ChaCha8Rng) -> Option<[Vec<Piece>; 2]> {
-        let [lower, upper] = &self.grounds.tiles[crossing.across as usize];
+        let [lower, upper] = &self.place.halves;
         let (before, beyond) = if crossing.forward { (lower, upper) } else { (upper, lower) };
         let entry = self.library.entry_of(&crossing.pieces[0]);
         let exit = self.library.exit_of(crossing.pieces.last()?);
@@ -302,7 +198,7 @@ impl Drawing<'_> {
             let ground = Tracks::on_open_ground(self.library, domain);
             Bridge::default().search(ground.view(), from, goal, Company::NONE, TASTE, rng)
         };
-        let horizon = self.grounds.open.horizon;
+        let horizon = self.place.whole.horizon;
         let mut leads: [Vec<Piece>; 2] = Default::default();
         if entry.tick > 0 {
             leads[0] = lead(before, entry, Goal::Since((entry.tick - LEAD).max(0)))?;
@@ -313,18 +209,16 @@ impl Drawing<'_> {
         Some(leads)
     }
 
-    /// Walks that follow each other, at least so many ticks long, those in the middle standing if it is longer than needed.
-    fn chain(&self, length: i32, rng: &mut ChaCha8Rng) -> Vec<&Move> {
+    /// Walks that follow each other, long enough if there are such.
+    fn chain(&self, rng: &mut ChaCha8Rng) -> Vec<&'a Move> {
         let mut chain = vec![*self.walks.choose(rng).expect("some walk")];
         let mut ticks = chain[0].ticks;
-        while ticks < length && chain.len() < MOST_PIECES {
+        while ticks < LONG && chain.len() < MOST_PIECES {
             let group = chain[chain.len() - 1].group;
-            // People stand on the border, not before and after it.
-            let stands = length > LONG && (LONG / 2..length - LONG / 2).contains(&ticks);
             let follows = |m: &&&Move| self.library.roles[m.role as usize].entry_group == group;
-            let all: Vec<&Move> = self.walks.iter().filter(follows).copied().collect();
-            let liked: Vec<&Move> = all.iter().filter(|m| is_brisk(m) != stands).copied().collect();
-            let Some(&next) = liked.choose(rng).or_else(|| all.choose(rng)) else { break };
+            let following = |moves: &[&'a Move]| moves.iter().filter(follows).copied().collect::<Vec<_>>();
+            let next = |moves, rng: &mut ChaCha8Rng| following(moves).choose(rng).copied();
+            let Some(next) = next(&self.walks, rng).or_else(|| next(&self.others, rng)) else { break };
             chain.push(next);
             ticks += next.ticks;
         }
@@ -334,42 +228,30 @@ impl Drawing<'_> {
     fn lay(&self, roles: &[&Move], mut from: Ground, mut begin: i32) -> Vec<Piece> {
         let mut pieces = Vec::new();
         for step in roles {
-            let piece = Piece::rigid(self.library, &self.grounds.open, step.role, NO_INSTANCE, from, begin);
+            let piece = Piece::rigid(self.library, &self.place.whole, step.role, NO_INSTANCE, from, begin);
             (from, begin) = (piece.exit(), piece.end);
             pieces.push(piece);
         }
         pieces
     }
 
-    /// True if it begins on one side and ends on the other, and comes to no other tiles than these two.
+    /// True if it begins on one side and ends on the other, and keeps within its square.
     fn is_across(&self, crossing: &Crossing) -> bool {
         let sign = if crossing.forward { 1.0 } else { -1.0 };
-        let beyond = |place: Vec2| split(place, crossing.across).1 * sign;
+        let beyond = |place: Vec2| sign * if self.across == Across::X { place.x } else { place.y };
         let last = crossing.pieces.len() - 1;
         let (entry, exit) = (crossing.pieces[0].entry(), crossing.pieces[last].exit());
         let reach = self.library.max_reach.min(0.6) + END_ROOM;
-        beyond(entry.position) < -reach && beyond(exit.position) > reach && self.is_within(crossing)
-    }
-
-    /// True if it comes to no other tiles than the two that the edge joins.
-    fn is_within(&self, crossing: &Crossing) -> bool {
-        let sides = |along: f32, room: f32| along > room && along < self.side - room;
-        let inside = |piece: &Piece| {
-            piece.bodies.iter().all(|body| {
-                let discs = world_discs(body, footprint(self.library, piece.role, body));
-                discs.iter().all(|d| {
-                    let (along, depth) = split(d.truncate(), crossing.across);
-                    sides(along, d.z + SIDE_ROOM) && depth.abs() + d.z < self.side * 0.5
-                })
-            })
-        };
-        crossing.pieces.iter().all(inside)
+        let ground = Tracks::on_open_ground(self.library, &self.place.whole);
+        beyond(entry.position) < -reach
+            && beyond(exit.position) > reach
+            && crossing.pieces.iter().all(|piece| ground.view().is_free(piece))
     }
 
     /// True if it is walked as people can.
     fn is_clean(&self, crossing: &Crossing) -> bool {
         let mut desk = Desk::default();
-        let ground = Tracks::on_open_ground(self.library, &self.grounds.open);
+        let ground = Tracks::on_open_ground(self.library, &self.place.whole);
         let mut draft = Draft::new(&ground, &mut desk);
         let ids = crossing.pieces.iter().map(|p| draft.add(p.clone())).collect();
         draft.push_track(ids);
@@ -377,10 +259,10 @@ impl Drawing<'_> {
     }
 }
 
-/// How far along an edge, and beyond it, a place is.
-fn split(place: Vec2, across: Across) -> (f32, f32) {
+/// The place so far along an edge whose lower end is at the origin, and so far beyond it.
+pub(super) fn on_edge(across: Across, along: f32, beyond: f32) -> Vec2 {
     match across {
-        Across::X => (place.y, place.x),
-        Across::Z => (place.x, place.y),
+        Across::X => Vec2::new(beyond, along),
+        Across::Z => Vec2::new(along, beyond),
     }
 }

@@ -22,18 +22,19 @@ fn with<T>(scene: &Scene, seed: u64, ask: impl FnOnce(&Workshop, Plane) -> T) ->
     let (set, wang) = (plain_set(), scene.wang.unwrap());
     let library = Library::new(&set, scene.limits);
     let (passages, one) = (Passages::new(&library), one_tile(scene, wang));
-    let ribbons = ribbons(&library, &one, wang, seed).unwrap();
-    let shop =
-        Workshop { scene: &one, library: &library, passages: &passages, ribbons: &ribbons, side: wang.tile, seed };
+    passages.work_out_all();
+    let edges = Edges::new(&passages, &library, &one, wang, (seed, 60.0)).unwrap();
+    let shop = Workshop { scene: &one, library: &library, passages: &passages, edges: &edges, side: wang.tile, seed };
     ask(&shop, Plane::new(scene, wang, seed))
 }
 
-/// The final bodies of those who cross an edge.
-fn crossers(shop: &Workshop, across: Across, colour: u32, by: Vec2) -> Vec<Body> {
+/// The final bodies of those who cross an edge and of those who live on it.
+fn people_of(shop: &Workshop, across: Across, colour: u32, by: Vec2) -> Vec<Body> {
     let domain = Domain::new(shop.scene).unwrap();
+    let edge = shop.edges.of(across, colour);
+    let lives = edge.crossings.iter().map(|c| &c.pieces).chain(&edge.dwellers);
     let moved = |p: &Piece| p.clone().shifted(Shift { place: by, ticks: 0 });
-    let ribbons = shop.ribbons.of(across, colour);
-    let pieces: Vec<Vec<Piece>> = ribbons.map(|c| c.pieces.iter().map(moved).collect()).collect();
+    let pieces: Vec<Vec<Piece>> = lives.map(|life| life.iter().map(moved).collect()).collect();
     let chains: Vec<_> = pieces.iter().map(|p| uses(shop.library, &domain, p.iter())).collect();
     let people: Vec<_> = chains.iter().map(|c| segments(c)).collect();
     refine_all(&people, domain.last_frame(), domain.torus).bodies
@@ -46,18 +47,18 @@ fn deepest(a: &Body, b: &Body, horizon: i32) -> f32 {
 }
 
 #[test]
-fn nobody_who_crosses_an_edge_meets_anybody_who_crosses_another() {
+fn nobody_at_an_edge_runs_into_anybody_at_another() {
     with(&scene(2.0, 2.0), 3, |shop, _| {
         // The sides of a tile, and the edges that meet in its lower corner.
         let sides = (0..SIDES).map(|side| (of_side(side).0, edge_of(side, SIDE)));
         let corner = [(Across::X, Vec2::new(0.0, -SIDE)), (Across::Z, Vec2::new(-SIDE, 0.0))];
         let edges: Vec<_> = sides.chain(corner).collect();
         let bodies: Vec<[Vec<Body>; 2]> =
-            edges.iter().map(|&(across, by)| [0, 1].map(|colour| crossers(shop, across, colour, by))).collect();
+            edges.iter().map(|&(across, by)| [0, 1].map(|colour| people_of(shop, across, colour, by))).collect();
         let mut pairs = 0;
         for (i, own) in bodies.iter().enumerate() {
             for colour in own {
-                assert!(colour.len() >= 2);
+                assert!(colour.len() >= 4);
                 // Those of one edge and colour, and any of other edges.
                 let others = bodies[..i].iter().flatten().flatten();
                 for (n, a) in colour.iter().enumerate() {
@@ -78,7 +79,7 @@ fn who_leaves_a_tile_enters_the_next_at_the_same_place_and_tick() {
     with(&scene, 5, |shop, plane| {
         let tiles = build(shop, plane, &Options::default(), &mut |_| true).unwrap();
         let (horizon, library) = (Domain::new(&scene).unwrap().horizon, shop.library);
-        let people = Layout { plane, tiles: &tiles, ribbons: shop.ribbons, side: SIDE }.people();
+        let people = Layout { plane, tiles: &tiles, edges: shop.edges, side: SIDE }.people();
         assert_eq!(people.len(), scene.characters);
         let (mut roles, mut crossed) = (std::collections::BTreeSet::new(), 0);
         for pieces in &people {
@@ -113,13 +114,47 @@ fn everybody_but_those_who_cross_stays_in_the_tile() {
         let come = tile.stays.iter().filter(|s| s.from.is_some()).count();
         let go = tile.stays.iter().filter(|s| s.to.is_some()).count();
         assert!(come > 0 && come == go);
-        // Who stands on an upper border is counted in this tile, and belongs to two.
-        let dwellers = shop.dwellers(key, &UPPER_SIDES);
+        // Who lives on an upper border is counted in this tile, and put in with the plane.
+        let dwellers: Vec<&Vec<Piece>> = shop.edges(key, &UPPER_SIDES).flat_map(|(edge, _)| &edge.dwellers).collect();
         assert!(!dwellers.is_empty());
         assert_eq!(tile.stays.len(), shop.scene.characters + go - dwellers.len());
-        let all_the_time = |d: &Vec<Piece>| d[0].begin <= 0 && d[d.len() - 1].end >= domain.horizon;
+        let all_the_time = |d: &&Vec<Piece>| d[0].begin <= 0 && d[d.len() - 1].end >= domain.horizon;
         assert!(dwellers.iter().all(all_the_time));
     });
+}
+
+#[test]
+fn borders_are_as_full_and_as_sociable_as_the_inside() {
+    let scene = Scene { interaction: 0.2, ..scene(4.0, 4.0) };
+    with(&scene, 11, |shop, plane| {
+        let tiles = build(shop, plane, &Options::default(), &mut |_| true).unwrap();
+        let people = Layout { plane, tiles: &tiles, edges: shop.edges, side: SIDE }.people();
+        // Ticks near inner borders, far from them and at the rim, and how many of them in patches of several people.
+        let mut ticks = [[0.0f32; 2]; 3];
+        for (piece, body) in people.iter().flatten().flat_map(|p| p.bodies.iter().map(move |b| (p, b))) {
+            let place = is_near_a_border(&scene, body.position).map_or(2, |near| usize::from(!near));
+            ticks[place][0] += 1.0;
+            ticks[place][1] += f32::from(u8::from(shop.library.people_of(piece.role) > 1));
+        }
+        let [near, far, rim] = ticks;
+        let cell = |n: usize| (Vec2::new((n % 360) as f32, (n / 360) as f32) + 0.5) * 0.1 - Vec2::X * SIDE;
+        let count =
+            |wanted: bool| (0..360 * 360).filter(|&n| is_near_a_border(&scene, cell(n)) == Some(wanted)).count();
+        let density = near[0] / count(true) as f32 / (far[0] / count(false) as f32);
+        let company = near[1] / near[0] / (far[1] / far[0]);
+        let share = (near[1] + far[1] + rim[1]) / (near[0] + far[0] + rim[0]);
+        println!("beside the inside: {density:.2} as dense, {company:.2} as sociable; {share:.3} together");
+        assert!((0.75..1.35).contains(&density) && (0.7..1.4).contains(&company) && share >= scene.interaction);
+    });
+}
+
+/// Whether a place is within a metre of an inner border; nothing at the rim, which is a wall.
+fn is_near_a_border(scene: &Scene, place: Vec2) -> Option<bool> {
+    if -scene.region.signed_distance(place) < 1.0 {
+        return None;
+    }
+    let away = (place - (place / SIDE).round() * SIDE).abs();
+    Some(away.min_element() < 1.0)
 }
 
 #[test]

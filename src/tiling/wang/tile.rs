@@ -3,13 +3,14 @@
 use glam::Vec2;
 use rand_chacha::ChaCha8Rng;
 
+use super::edge::{Edge, Edges};
 use super::plane::{Across, Key, SIDES};
-use super::ribbon::{Crossing, Ribbons};
+use super::ribbon::Crossing;
 use crate::tiling::bridge::{Goal, Port, Taste};
 use crate::tiling::clock::Clock;
 use crate::tiling::domain::{self, Domain};
 use crate::tiling::draft::Draft;
-use crate::tiling::engine::fill;
+use crate::tiling::engine::{Shared, fill};
 use crate::tiling::library::Library;
 use crate::tiling::occupancy::PieceId;
 use crate::tiling::passage::Passages;
@@ -82,8 +83,8 @@ pub(super) struct Workshop<'a> {
     pub library: &'a Library<'a>,
     /// How people meet and part.
     pub passages: &'a Passages<'a>,
-    /// Who crosses edges.
-    pub ribbons: &'a Ribbons,
+    /// Who crosses edges and who lives on them.
+    pub edges: &'a Edges,
     /// Side of a tile, metres.
     pub side: f32,
     /// What all tiles are drawn from.
@@ -109,27 +110,35 @@ impl Workshop<'_> {
     /// The people who cross the borders of a tile, and where.
     fn crossings(&self, key: Key) -> impl Iterator<Item = (Gap, &Crossing)> {
         (0..SIDES).flat_map(move |side| {
-            let of = move |colour| self.ribbons.of(of_side(side).0, colour).enumerate();
+            let of = move |colour| self.edges.of(of_side(side).0, colour).crossings.iter().enumerate();
             let all = key.sides[side].into_iter().flat_map(of);
             all.map(move |(number, crossing)| (Gap { side, number }, crossing))
         })
     }
 
-    /// The patches of those who stand on some sides of a tile.
-    pub fn dwellers(&self, key: Key, sides: &[usize]) -> Vec<Vec<Piece>> {
-        let of = |&side: &usize| {
-            let shift = Shift { place: edge_of(side, self.side), ticks: 0 };
-            let put = move |c: &Crossing| c.pieces.iter().map(|p| p.clone().shifted(shift)).collect();
-            key.sides[side].into_iter().flat_map(move |colour| self.ribbons.dwellers(of_side(side).0, colour)).map(put)
-        };
-        sides.iter().flat_map(of).collect()
+    /// Some sides of a tile, and where they are.
+    pub fn edges(&self, key: Key, sides: &[usize]) -> impl Iterator<Item = (&Edge, Vec2)> {
+        let of =
+            move |&side: &usize| Some((self.edges.of(of_side(side).0, key.sides[side]?), edge_of(side, self.side)));
+        sides.iter().filter_map(of)
     }
 
     /// How many people are in a tile besides those on its borders.
     fn residents(&self, key: Key) -> usize {
-        // Half of each crossing's life is here; who stands on an upper border counts as one of this tile.
-        let others = self.crossings(key).count() / 2 + self.dwellers(key, &UPPER_SIDES).len();
-        self.scene.characters.saturating_sub(others)
+        // Half of each crossing's life is here; who lives on an upper border counts as one of this tile.
+        let dwellers: usize = self.edges(key, &UPPER_SIDES).map(|(edge, _)| edge.dwellers.len()).sum();
+        self.scene.characters.saturating_sub(self.crossings(key).count() / 2 + dwellers)
+    }
+
+    /// How many ticks in patches of several people those on the borders are short of what is wished for, half of which is
+    /// this tile's.
+    fn lack(&self, key: Key, horizon: i32) -> f32 {
+        let share = self.scene.interaction;
+        // The whole of a crosser's time counts in both tiles, that on the border twice.
+        let lack = |(edge, _): (&Edge, Vec2)| {
+            share * (edge.dwellers.len() as f32 * horizon as f32 - edge.crossing() as f32) - edge.company as f32
+        };
+        self.edges(key, &[0, 1, 2, 3]).map(lack).sum::<f32>() * 0.5
     }
 
     /// Works a tile out.
@@ -138,18 +147,21 @@ impl Workshop<'_> {
     /// Somebody who crosses its borders finds no way.
     pub fn build(&self, key: Key, secs: f64) -> Result<Tile> {
         let mut crossings: Vec<Visit> = self.crossings(key).map(|(gap, c)| self.visit(gap, c)).collect();
-        let dwellers = self.dwellers(key, &[0, 1, 2, 3]);
-        let on_border = crossings.iter().map(|c| &c.pieces).chain(&dwellers).map(|pieces| places(pieces));
+        let on_border = crossings.iter().map(|c| places(&c.pieces));
         let domain = Domain::new(self.scene)?.crossed_by(on_border.collect());
+        let lack = self.lack(key, domain.horizon);
         for again in 0..SEEDS {
             let mut tracks = Tracks::new(self.library, &domain);
             let mut go_on = |_: &Progress| true;
-            let standing: Vec<Vec<PieceId>> = dwellers.iter().map(|d| tracks.fix(d.iter().cloned())).collect();
+            for (edge, place) in self.edges(key, &[0, 1, 2, 3]) {
+                let dwellers: Vec<Vec<Piece>> = edge.dwellers.iter().map(|life| put(life, place)).collect();
+                tracks.fix(&dwellers);
+            }
             let crossers = self.crossers(&mut tracks, &crossings);
-            standing.into_iter().for_each(|ids| tracks.enter(ids));
             let (seed, clock) =
                 ((key.seed(self.seed.wrapping_add(again)), again < PICKY), Clock::new(secs, &mut go_on));
-            let people = (crossers.as_slice(), dwellers.len() + self.residents(key));
+            let crossing = crossers.iter().map(|c| c.ticks_inside(domain.horizon)).sum();
+            let people = (&Shared { crossers: &crossers, crossing, lack }, self.residents(key));
             match fill(self.scene, self.passages, tracks, people, seed, clock) {
                 Ok(tracks) => return Ok(finished(&tracks, &crossers)),
                 // Who found no way comes first next time.
@@ -163,15 +175,14 @@ impl Workshop<'_> {
 
     /// A crossing as the tile sees it.
     fn visit(&self, gap: Gap, crossing: &Crossing) -> Visit {
-        let shift = Shift { place: edge_of(gap.side, self.side), ticks: 0 };
-        let put = |pieces: &[Piece]| pieces.iter().map(|p| p.clone().shifted(shift)).collect();
+        let put = |pieces: &[Piece]| put(pieces, edge_of(gap.side, self.side));
         let comes = crossing.forward != of_side(gap.side).1;
         Visit { gap, comes, pieces: put(&crossing.pieces), lead: put(&crossing.leads[usize::from(comes)]) }
     }
 
     /// Puts those in who cross the borders.
     fn crossers(&self, tracks: &mut Tracks, visits: &[Visit]) -> Vec<Crosser> {
-        let ids: Vec<Vec<PieceId>> = visits.iter().map(|v| tracks.fix(v.pieces.iter().cloned())).collect();
+        let ids = tracks.fix(visits.iter().map(|v| &v.pieces));
         let crosser = |(visit, ids): (&Visit, Vec<PieceId>)| Crosser {
             ids,
             kept: visit.lead.iter().map(|p| tracks.put(p.clone())).collect(),
@@ -182,6 +193,20 @@ impl Workshop<'_> {
         };
         visits.iter().zip(ids).map(crosser).collect()
     }
+}
+
+impl Crosser {
+    /// Ticks for which somebody is in this tile, the border included.
+    fn ticks_inside(&self, horizon: i32) -> usize {
+        let from = if self.comes { self.entry.tick.max(0) } else { 0 };
+        let to = if self.comes { horizon } else { self.exit.tick.min(horizon) };
+        (to - from).max(0) as usize
+    }
+}
+
+/// Pieces of an edge whose lower end is somewhere.
+fn put(pieces: &[Piece], place: Vec2) -> Vec<Piece> {
+    pieces.iter().map(|p| p.clone().shifted(Shift { place, ticks: 0 })).collect()
 }
 
 /// Where somebody is while crossing.
@@ -225,9 +250,7 @@ fn finished(tracks: &Tracks, crossers: &[Crosser]) -> Tile {
         pieces: ids.iter().filter(|&&id| !tracks.is_fixed(id)).map(|&id| tracks.piece(id).clone()).collect(),
         to: gap(ids.last(), false),
     };
-    // Who stands on a border belongs to two tiles.
-    let is_own = |s: &Stay| s.from.is_some() || s.to.is_some() || !s.pieces.is_empty();
-    let stays: Vec<Stay> = tracks.tracks.iter().map(stay).filter(is_own).collect();
+    let stays: Vec<Stay> = tracks.tracks.iter().map(stay).collect();
     let instances = stays.iter().flat_map(|s| &s.pieces).map(|p| p.instance + 1).max().unwrap_or(0);
     Tile { stays, instances }
 }
