@@ -53,8 +53,8 @@ fn every_scene_loads() {
 }
 
 #[test]
-fn static_of_the_five_densities() {
-    for (density, people) in [(1, 16), (2, 34), (3, 48), (4, 60), (5, 70)] {
+fn static_of_the_five_densities_and_a_denser_one() {
+    for (density, people) in [(1, 16), (2, 34), (3, 48), (4, 60), (5, 70), (6, 288)] {
         let outcome = clean(&format!("static-{density}"), 1);
         assert_eq!(outcome.status, Status::Perfect);
         assert_eq!(outcome.crowd.characters.len(), people);

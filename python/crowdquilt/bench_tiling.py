@@ -41,6 +41,7 @@ STATIC = (
     Static("density-144", 144, 0.25),
     Static("density-200", 200, 0.08),
     Static("density-max", 200, 0.2),
+    Static("density-288", 288, 0.08),
 )
 SQUARES = ((8, 0.5), (16, 0.5), (32, 0.5), (120, 0.4862))
 """Sides of the squares over which growth is measured, metres, and people per square metre: the largest holds 7,000."""
