@@ -115,7 +115,7 @@ def static(scene: Static, patches: PatchSet, seeds: int, say: Say, published: bo
 
 
 def example(scene: Example, patches: PatchSet, seeds: int, say: Say) -> list[Row]:
-    """The figures of an example scene; none where the repository's examples are not at hand or the set lacks its labels."""
+    """The figures of an example scene; none where its file is not at hand or the set cannot play it."""
     file = SCENES / f"{scene.row}.toml"
     if not file.exists():
         say(f"tiling: {scene.row}: skipped, {file} is not there")
@@ -186,11 +186,15 @@ def spread(name: str, made: list[Run]) -> str:
 
 ALONE = """
 import json, resource, sys
+from pathlib import Path
 from crowdquilt import check
 from crowdquilt._core import PatchSet, Scene, tile
 outcome = tile(Scene.from_toml(sys.argv[2]), PatchSet.load(sys.argv[1]), seed=1, time=120.0)
 ok = outcome.status == "perfect" and check.check(outcome.crowd).ok
-peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+# What `getrusage` tells counts in the process that this one was made from.
+status = Path("/proc/self/status")
+own = [line.split()[1] for line in status.read_text().splitlines() if line.startswith("VmHWM")] if status.exists() else []
+peak = int(own[0]) if own else resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 people = check.summary(outcome.crowd).characters
 print(json.dumps({"secs": outcome.solve_secs, "people": people, "ok": ok, "peak": peak}))
 """

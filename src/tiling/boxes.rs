@@ -28,7 +28,7 @@ pub(super) fn in_the_way(chains: Chains, played: &Performance, is_new: &[bool]) 
         return vec![];
     }
     let at_tick = |places: &mut Places, tick: i32| {
-        places.look(tick..=tick, played.bodies.iter(), chains.domain.torus, REACH);
+        places.look(tick..=tick, played.bodies.iter(), chains.domain.torus, 2.0 * REACH);
         let mut now = to_blame(chains, played, places, tick);
         now.retain(|&(a, b)| is_new[a] || is_new[b]);
         (tick, now)

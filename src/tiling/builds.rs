@@ -197,7 +197,7 @@ impl<'a> Fitting<'a> {
             if here.is_empty() {
                 return vec![];
             }
-            places.look(tick..=tick, self.worn.iter().map(|w| &w.body), self.chains.domain.torus, REACH);
+            places.look(tick..=tick, self.worn.iter().map(|w| &w.body), self.chains.domain.torus, 2.0 * REACH);
             let near = |(prop, cuboid): &(&Prop, Cuboid)| {
                 let near = places.near(cuboid.at.ground().position, REACH + cuboid.radius());
                 let strangers = near.filter(|&p| changed[p] && prop.holders(tick as u32).all(|h| h != p as u32));
