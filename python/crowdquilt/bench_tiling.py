@@ -193,8 +193,9 @@ outcome = tile(Scene.from_toml(sys.argv[2]), PatchSet.load(sys.argv[1]), seed=1,
 ok = outcome.status == "perfect" and check.check(outcome.crowd).ok
 # What `getrusage` tells counts in the process that this one was made from.
 status = Path("/proc/self/status")
-own = [line.split()[1] for line in status.read_text().splitlines() if line.startswith("VmHWM")] if status.exists() else []
-peak = int(own[0]) if own else resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+lines = status.read_text().splitlines() if status.exists() else []
+own = [int(line.split()[1]) for line in lines if line.startswith("VmHWM")]
+peak = own[0] if own else resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 people = check.summary(outcome.crowd).characters
 print(json.dumps({"secs": outcome.solve_secs, "people": people, "ok": ok, "peak": peak}))
 """
