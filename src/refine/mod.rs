@@ -10,7 +10,7 @@ mod leg;
 mod prop;
 mod touch;
 
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::geom::Torus;
@@ -149,9 +149,15 @@ fn smoothstep(x: f32) -> f32 {
 pub fn refine_crowd(crowd: &Crowd) -> Crowd {
     if crowd.domain.periodic.t {
         // Everybody's life goes on as it began: the middle one of three laps knows what comes before and after.
-        let last = crowd.domain.last_frame;
+        let (last, torus) = (crowd.domain.last_frame, crowd.domain.torus());
         let laps = refine_crowd(&crowd.laps(3));
-        return Crowd { domain: crowd.domain.clone(), ..laps.cut(last, 2 * last) };
+        let mut again = Crowd { domain: crowd.domain.clone(), ..laps.cut(last, 2 * last) };
+        for (now, was) in again.characters.iter_mut().zip(&crowd.characters) {
+            // Who is in another tile a lap later comes back to this one.
+            let away = now.root[0] - was.root[0];
+            now.move_by(-torus.whole(Vec2::new(away.x, away.z)));
+        }
+        return again;
     }
     let people: Vec<Vec<Segment>> = crowd.characters.iter().map(|c| segments_of(crowd, c)).collect();
     let Performance { bodies, props, .. } = refine_all(&people, crowd.domain.last_frame, crowd.domain.torus());

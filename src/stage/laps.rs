@@ -196,7 +196,8 @@ impl Crowd {
 }
 
 impl Character {
-    pub(super) fn move_by(&mut self, by: Vec2) {
+    /// Puts somebody somewhere else, metres.
+    pub(crate) fn move_by(&mut self, by: Vec2) {
         self.root.iter_mut().for_each(|p| *p += Vec3::new(by.x, 0.0, by.y));
         self.fragments.iter_mut().flat_map(|f| &mut f.points).for_each(|p| *p += by);
     }
