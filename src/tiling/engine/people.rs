@@ -27,6 +27,8 @@ pub(super) const COMPACT: f32 = 4.0;
 /// Where time comes round the way back to where somebody began takes room as well: so large a share, less where nobody finds
 /// room for so much.
 const LOOP_TOGETHER: f32 = 0.6;
+/// So few people find room anyway.
+const FEW: usize = 12;
 const LOOP_YIELD: f32 = 0.2;
 /// Of so many gatherings that are worked out at one person per m^2, so many are made: those that sweep the least ground.
 const RIVALS: f32 = 18.0;
@@ -67,7 +69,7 @@ impl Engine<'_> {
             return;
         }
         let taste = Taste { expansions: GATHER_EXPANSIONS, ..self.taste };
-        let loops = self.crew.tracks.domain.cycle.loops();
+        let loops = self.crew.tracks.domain.cycle.loops() && self.scene.characters > FEW;
         let rivals = rivals(self.scene, loops);
         let mut least = match is_dense(self.scene) {
             true => DENSE_TOGETHER,
