@@ -54,7 +54,7 @@ struct FragmentHeader {
 /// A rotation as four 16-bit integers; the error is below 0.005 degrees.
 pub(crate) fn pack_rotation(q: Quat) -> [i16; 4] {
     // Half up, without a call of the library's `round`: this runs for every joint of every frame of a crowd.
-    q.to_array().map(|v| (v * 32767.0 + 0.5_f32.copysign(v)) as i32 as i16)
+    q.to_array().map(|v| (v * 32767.0 + 0.5_f32.copysign(v)) as i16)
 }
 
 /// The rotation packed by [`pack_rotation`].

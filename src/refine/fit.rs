@@ -223,20 +223,9 @@ fn canonical_leg() -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::{FPS, Motion, testing};
+    use crate::motion::{FPS, testing};
     use crate::patch::turn_between;
-
-    fn body(motion: &Motion) -> Body {
-        let mut body = Body::default();
-        let mut globals = Vec::new();
-        for f in 0..motion.len() {
-            motion.globals(f, &mut globals);
-            body.root.push(globals[HIPS].0);
-            body.rotations.push(globals[HIPS].1);
-            body.rotations.extend_from_slice(&motion.pose(f)[1..]);
-        }
-        body
-    }
+    use crate::refine::testing::body;
 
     fn globals(body: &Body, build: &Build, frame: usize) -> Vec<(Vec3, Quat)> {
         let mut out = Vec::new();

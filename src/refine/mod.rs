@@ -8,6 +8,8 @@ mod feet;
 mod fit;
 mod leg;
 mod prop;
+#[cfg(test)]
+pub(crate) mod testing;
 mod touch;
 
 use glam::{Quat, Vec2, Vec3};

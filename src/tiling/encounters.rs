@@ -125,22 +125,11 @@ mod tests {
     use crate::motion::joint::*;
     use crate::motion::{Build, JOINT_COUNT, Motion, testing};
     use crate::refine::fit;
+    use crate::refine::testing::body;
     use crate::tiling::Scene;
     use glam::{Quat, Vec3};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
-
-    fn body(motion: &Motion) -> Body {
-        let mut body = Body::default();
-        let mut globals = Vec::new();
-        for f in 0..motion.len() {
-            motion.globals(f, &mut globals);
-            body.root.push(globals[HIPS].0);
-            body.rotations.push(globals[HIPS].1);
-            body.rotations.extend_from_slice(&motion.pose(f)[1..]);
-        }
-        body
-    }
 
     /// Somebody who stands with the arms turned by an angle: half a turn upwards is straight up.
     fn with_arms_up(angle: f32) -> Motion {
