@@ -18,7 +18,7 @@ fn own(set: &PatchSet) -> impl Iterator<Item = &PatchKind> {
 fn captured() -> Option<Made> {
     let folder = mocap::folder()?;
     let start = std::time::Instant::now();
-    let made = make(&folder.join("index.csv"), &MakeOptions::default()).unwrap();
+    let made = make(&[folder.join("index.csv")], &MakeOptions::default()).unwrap();
     println!("made in {:.2} s", start.elapsed().as_secs_f64());
     Some(made)
 }
@@ -94,7 +94,7 @@ fn bare(folder: &Path) {
 fn samples_without_annotation_annotate_themselves_the_same_each_time() {
     let folder = tempfolder("bare");
     bare(&folder);
-    let made = make(&folder, &MakeOptions::default()).unwrap();
+    let made = make(&[&folder], &MakeOptions::default()).unwrap();
     std::fs::remove_dir_all(&folder).unwrap();
     let (alone, together): (Vec<_>, Vec<_>) = own(&made.set).partition(|k| k.people() == 1);
     println!("{} kinds of one person, {} of several, {:?}", alone.len(), together.len(), made.set.groups);

@@ -9,7 +9,7 @@ use composing::{SOURCES, crowd_with, edited, made, sample_set};
 use crowdquilt::check;
 use crowdquilt::geom::{Ground, wrap_angle};
 use crowdquilt::motion::contacts::palm;
-use crowdquilt::motion::{FPS, JOINT_COUNT, Motion, joint};
+use crowdquilt::motion::{FPS, JOINT_COUNT, Motion, MotionPath, joint};
 use crowdquilt::patch::compose::{add, compose};
 use crowdquilt::patch::{CutOptions, PatchKind, PatchSet, mirrored};
 use glam::Vec2;
@@ -32,6 +32,12 @@ plays = ["walk", "slow"]
 name = "bob"
 plays = ["walk", "slow"]
 "#;
+
+/// One walker of one cycle.
+fn one_walker() -> String {
+    let second = WALK.find("[[roles]]\nname = \"bob\"").unwrap();
+    WALK[..second].replace("[\"walk\", \"slow\"]", "[\"walk\"]")
+}
 
 /// Where one role stands seen from another at a frame of the patch's clock.
 fn seen(kind: &PatchKind, from: usize, who: usize, tick: u32) -> Ground {
@@ -211,6 +217,31 @@ fn starts_are_kept() {
 }
 
 #[test]
+fn a_clip_may_end_elsewhere() {
+    let path = |text: &str| made(text).map(|kind| kind.fragments[0].motion.path.clone());
+    let reached = |path: &MotionPath| path.at(0).inverse().then(path.at(path.len() - 1));
+    let alone = one_walker();
+    let free = path(&alone).unwrap();
+    let there = reached(&free);
+    // Farther, to the left, and turned as well.
+    let (at, turn) = (there.position + Vec2::new(0.2, 0.3), there.heading + 0.4);
+    let end = format!(", end = {{ ahead = {}, left = {}, turn_deg = {} }}", at.y, at.x, turn.to_degrees());
+    let text = alone.replacen("cycle\" }", &format!("cycle\"{end} }}"), 1);
+    let led = path(&text).unwrap();
+    assert!(reached(&led).position.distance(at) < 1e-4, "{:?}", reached(&led));
+    assert!(wrap_angle(reached(&led).heading - turn).abs() < 1e-4);
+    // Evenly: no frame turns or moves by more of it than another.
+    let per_frame = 0.4 / (free.len() - 1) as f32;
+    for i in 1..free.len() {
+        let more = (led.headings[i] - led.headings[i - 1]) - (free.headings[i] - free.headings[i - 1]);
+        assert!((more - per_frame).abs() < 1e-4, "frame {i}: {more}");
+    }
+    fails(&text, "ahead = ", "ahead = 1", &["line 4", "clip walk", "of where it leads", "found 1"]);
+    fails(&text, "turn_deg = ", "turn_deg = 16", &["line 4", "clip walk", "of where it turns to", "deg"]);
+    fails(&text, "ahead = ", "away = ", &["line 4", "away"]);
+}
+
+#[test]
 fn moving_and_turning_the_sources_changes_nothing() {
     let there = Ground::new(Vec2::new(-3.0, 7.0), 2.0);
     let mut moved = SOURCES.clone();
@@ -290,6 +321,19 @@ fn what_cannot_hold_is_refused_and_says_by_how_much() {
     fails(&format!("{MEET}\n{other}"), "1.4", "1.5", &["line 26", "contradicts"]);
     fails(MEET, "ahead = 1.3", "ahead = 0.3", &["line 16", "ann", "bob", "deep"]);
     fails(PUSH, "ahead = 0.72", "ahead = 1.2", &["line 26", "reach each other", "bully", "victim"]);
+}
+
+#[test]
+fn a_clip_may_be_seen_in_a_mirror() {
+    let alone = one_walker();
+    let mut set = PatchSet { groups: vec![], ..sample_set() };
+    let kind = |text: &str, set: &mut PatchSet| compose(text, &SOURCES, &mut set.groups).unwrap();
+    let (plain, seen) =
+        (kind(&alone, &mut set), kind(&alone.replacen("cycle\"", "cycle\", mirror = true", 1), &mut set));
+    let twin = mirrored(&plain, &mut set.groups);
+    assert_eq!(seen.fragments[0].motion.rotations, twin.fragments[0].motion.rotations);
+    assert_eq!(seen.fragments[0].entry_group, twin.fragments[0].entry_group);
+    assert_ne!(seen.fragments[0].entry_group, plain.fragments[0].entry_group);
 }
 
 /// Two who bow, and then have got so much farther apart than they would walk by themselves.

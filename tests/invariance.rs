@@ -58,7 +58,7 @@ fn made(name: &str, takes: &[Take]) -> Made {
     let folder = Folder(path);
     std::fs::create_dir_all(&folder.0).unwrap();
     takes.iter().for_each(|t| write(&folder.0, t));
-    make(&folder.0, &MakeOptions::default()).unwrap()
+    make(&[&folder.0], &MakeOptions::default()).unwrap()
 }
 
 fn write(folder: &Path, take: &Take) {

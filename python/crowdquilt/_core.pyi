@@ -474,7 +474,7 @@ class Made:
     def take_files(self) -> list[tuple[str, str]]: ...
 
 def make_patches(
-    source: AnyPath,
+    source: AnyPath | Sequence[AnyPath],
     captures: AnyPath | None = None,
     *,
     threshold: float | None = None,

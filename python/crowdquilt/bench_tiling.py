@@ -43,6 +43,7 @@ STATIC = (
     Static("density-max", 200, 0.2),
     Static("density-288", 288, 0.08),
 )
+PAPER_KINDS = 43
 SQUARES = ((8, 0.5), (16, 0.5), (32, 0.5), (120, 0.4862))
 """Sides of the squares over which growth is measured, metres, and people per square metre: the largest holds 7,000."""
 THREADED = (40, 0.5)
@@ -65,6 +66,8 @@ EXAMPLES = (
     Example("sources"),
     Example("hopping", None, 30, 7 * 60),
     Example("boxes", 526, 36, 6.5 * 60),
+    Example("keyframing"),
+    Example("fountain"),
 )
 SCENES = Path(__file__).resolve().parents[2] / "examples" / "scenes"
 BOX_LABELS = {"carry", "sit"}
@@ -130,7 +133,7 @@ def example(scene: Example, patches: PatchSet, seeds: int, say: Say) -> list[Row
         figures.append(figure(scene.row, "bumps, fewest", min(instances_with(r.outcome, {"bump"}) for r in made)))
     if scene.row == "boxes":
         figures.append(figure(scene.row, "boxes, fewest", min(r.summary.props for r in made)))
-        kinds = (len(kinds_with(r.outcome, BOX_LABELS)) for r in made)
+        kinds = (len(kinds_of(r.outcome, BOX_LABELS)) for r in made)
         figures.append(figure(scene.row, "kinds with boxes, fewest", min(kinds), "", 16))
     say(spread(scene.row, made))
     return figures
@@ -142,10 +145,10 @@ def instances_with(outcome: Outcome, labels: set[str]) -> int:
     return sum(bool(labels & set(kinds[kind].labels)) for kind in outcome.crowd.instances)
 
 
-def kinds_with(outcome: Outcome, labels: set[str]) -> set[str]:
-    """The kinds in use that have one of some labels; mirror images count once."""
+def kinds_of(outcome: Outcome, labels: set[str] | None = None) -> set[str]:
+    """The kinds in use, or those that have one of some labels; mirror images count once."""
     used = (outcome.crowd.kinds[kind] for kind in set(outcome.crowd.instances.tolist()))
-    return {kind.name.removesuffix("-mirror") for kind in used if labels & set(kind.labels)}
+    return {kind.name.removesuffix("-mirror") for kind in used if labels is None or labels & set(kind.labels)}
 
 
 def figures_of(scene: Static | Example, made: list[Run], prefix: str) -> list[Row]:
@@ -156,11 +159,13 @@ def figures_of(scene: Static | Example, made: list[Run], prefix: str) -> list[Ro
         return [figure(scene.row, f"{prefix}{name}, {which}", value, unit, reference) for which, value in told.items()]
 
     summaries = [r.summary for r in made]
+    kinds = PAPER_KINDS if scene.row == "static-907" else None
     return [
         figure(scene.row, f"{prefix}perfect and checked, of {len(made)} seeds", sum(r.ok for r in made)),
         *figures("seconds", [r.outcome.solve_secs for r in made], "s", scene.secs),
         *figures("characters", [s.characters for s in summaries], "", scene.people),
         *figures("patches placed", [s.instances for s in summaries], "", scene.patches),
+        *figures("kinds, mirror images not counted", [len(kinds_of(r.outcome)) for r in made], "", kinds),
         *figures("share of time in patches of two or more", [s.multi_person_share for s in summaries]),
         figure(scene.row, f"{prefix}danglings, all runs", sum(s.danglings for s in summaries), "", 0.0),
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from os import PathLike
 
 from crowdquilt._core import (
@@ -46,6 +47,11 @@ __all__ = [
 ]
 
 
-def cut(source: str | PathLike[str], captures: str | PathLike[str] | None = None, *, study: bool = True) -> PatchSet:
+AnyPath = str | PathLike[str]
+
+
+def cut(
+    source: AnyPath | Sequence[AnyPath], captures: AnyPath | None = None, *, study: bool = True
+) -> PatchSet:
     """Make the patch set of captures; see `make`, which also tells how it came about."""
     return make(source, captures, study=study).set

@@ -18,7 +18,15 @@ use crate::numbers::points2;
 use crate::progress::watched;
 use crate::signals::{TakeSignals, kind_name};
 
-/// Make a patch set of captures: a folder, an index (`.csv`), a take file (`.take.json`) or one capture.
+/// Where captures come from: one path, or several.
+#[derive(FromPyObject)]
+pub enum Sources {
+    One(PathBuf),
+    Several(Vec<PathBuf>),
+}
+
+/// Make a patch set of captures: a folder, an index (`.csv`), a take file (`.take.json`) or one capture; or several of
+/// them together.
 ///
 /// Takes without patches annotate themselves: events between people are found, and a few recurring poses at which
 /// patches begin and end. `captures` is a folder that captures are looked up in first. `threshold` is how near two poses
@@ -31,7 +39,7 @@ use crate::signals::{TakeSignals, kind_name};
 #[allow(clippy::too_many_arguments)]
 pub fn make_patches(
     py: Python<'_>,
-    source: PathBuf,
+    source: Sources,
     captures: Option<PathBuf>,
     threshold: Option<f32>,
     groups: Option<usize>,
@@ -42,6 +50,10 @@ pub fn make_patches(
     study: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Made> {
+    let sources = match source {
+        Sources::One(path) => vec![path],
+        Sources::Several(paths) => paths,
+    };
     let mut options = core::MakeOptions { compose: compose.unwrap_or_default(), ..Default::default() };
     options.cut.captures = captures;
     let annotate = &mut options.annotate;
@@ -53,7 +65,7 @@ pub fn make_patches(
     set(&mut annotate.episodes.near, near, "near", 0.0..100.0)?;
     let show = |py: Python<'_>, step: (&str, f32)| Ok(step.into_pyobject(py)?.into_any().unbind());
     let (made, interrupt) = watched(py, progress, show, |report| {
-        let mut made = core::make_with(&source, &options, &|step| report(named(step)))?;
+        let mut made = core::make_with(&sources, &options, &|step| report(named(step)))?;
         // What cannot be tiled with is told when somebody tries.
         if study && matches!(studied(&mut made.set, report), Err(crowdquilt::Error::Stopped)) {
             return Err(crowdquilt::Error::Stopped);

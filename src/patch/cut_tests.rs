@@ -73,7 +73,7 @@ const TAKE: &str = r#"{
 fn error(name: &str, take: &str) -> String {
     let folder = Folder::new(name);
     let path = folder.write(take);
-    make(&path, &MakeOptions::default()).expect_err("must be refused").to_string()
+    make(&[&path], &MakeOptions::default()).expect_err("must be refused").to_string()
 }
 
 fn refused(name: &str, from: &str, to: &str, says: &[&str]) {
@@ -168,11 +168,25 @@ fn names_must_be_unique() {
 }
 
 #[test]
+fn several_sources_make_one_set() {
+    let folders = ["one", "other"].map(Folder::new);
+    let other = TAKE.replace("\"two\"", "\"three\"").replace("meet", "part").replace("\"alone\"", "\"single\"");
+    let paths = [folders[0].write(TAKE), folders[1].write(&other)];
+    let made = make(&paths, &MakeOptions::default()).unwrap();
+    let takes: Vec<&str> = made.takes.iter().map(|c| c.take.name.as_str()).collect();
+    assert_eq!(takes, ["two", "three"]);
+    let names: Vec<&str> = made.set.kinds.iter().map(|k| k.name.as_str()).collect();
+    assert_eq!(names, ["meet", "alone", "part", "single", "meet-mirror", "part-mirror"]);
+    let found = make(&[&paths[0], &paths[0]], &MakeOptions::default()).unwrap_err().to_string();
+    assert!(found.contains("take two") && found.contains("a name of its own"), "{found}");
+}
+
+#[test]
 fn a_bad_capture_is_named() {
     let folder = Folder::new("capture");
     let path = folder.write(TAKE);
     std::fs::write(folder.0.join("b.bvh"), walker(0.0).replace("left_hand", "thing")).unwrap();
-    let found = make(&path, &MakeOptions::default()).unwrap_err().to_string();
+    let found = make(&[&path], &MakeOptions::default()).unwrap_err().to_string();
     assert!(found.contains("capture b: skeleton") && found.contains("left_hand"), "{found}");
 }
 
@@ -243,7 +257,7 @@ fn a_box_without_hands_on_it_is_refused_or_left_out() {
     let folder = Folder::new("far-hands-raw");
     let (raw, _) = narrow.split_once("\"patches\"").unwrap();
     let path = folder.write(&format!("{raw}\"patches\": []}}"));
-    let made = make(&path, &MakeOptions::default()).unwrap();
+    let made = make(&[&path], &MakeOptions::default()).unwrap();
     let notes = made.notes(0).join("\n");
     assert!(notes.contains("prop box is left out") && says.iter().all(|s| notes.contains(s)), "{notes}");
     assert!(made.takes[0].take.props.is_empty());

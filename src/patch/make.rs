@@ -58,21 +58,26 @@ pub enum Step {
     Cut,
 }
 
-/// The patch set of a folder, an index, a take file or a capture (see [`collect`]).
+/// The patch set of folders, indexes, take files and captures (see [`collect`]), all together.
 ///
 /// # Errors
-/// As [`collect`], [`load_take`], [`cut`] and [`compose::add`].
-pub fn make(path: &Path, options: &MakeOptions) -> Result<Made> {
-    make_with(path, options, &|_| true)
+/// As [`collect`], [`load_take`], [`cut`] and [`compose::add`]; two takes of one name.
+pub fn make<P: AsRef<Path>>(paths: &[P], options: &MakeOptions) -> Result<Made> {
+    make_with(paths, options, &|_| true)
 }
 
 /// As [`make`]; `report` hears of every step, on any thread, and says whether to go on.
 ///
 /// # Errors
 /// As [`make`]; stopped.
-pub fn make_with(path: &Path, options: &MakeOptions, report: &(dyn Fn(Step) -> bool + Sync)) -> Result<Made> {
+pub fn make_with<P: AsRef<Path>>(
+    paths: &[P],
+    options: &MakeOptions,
+    report: &(dyn Fn(Step) -> bool + Sync),
+) -> Result<Made> {
     let reach = |step: Step| if report(step) { Ok(()) } else { Err(Error::Stopped) };
-    let mut takes = collect(path)?;
+    let paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
+    let mut takes = collect_all(&paths)?;
     let done = AtomicUsize::new(0);
     let load = |c: &Collected| {
         let motions = load_take(&c.origin, &c.take, &options.cut)?;
@@ -107,8 +112,8 @@ pub fn make_with(path: &Path, options: &MakeOptions, report: &(dyn Fn(Step) -> b
         .map(|(c, motions)| Source { origin: c.origin.clone(), take: c.take.clone(), motions })
         .collect();
     let mut set = cut(&sources, &options.cut)?;
-    let own = path.is_dir().then(|| path.to_owned());
-    let compositions: Vec<PathBuf> = own.into_iter().chain(options.compose.iter().cloned()).collect();
+    let own = paths.iter().filter(|path| path.is_dir()).map(|path| path.to_path_buf());
+    let compositions: Vec<PathBuf> = own.chain(options.compose.iter().cloned()).collect();
     compose::add(&mut set, &compositions, &sources, &options.cut)?;
     let found: BTreeSet<&str> = bare.iter().flat_map(|&i| &takes[i].take.patches).map(|p| p.name.as_str()).collect();
     let names = close(&mut set, |kind| found.contains(kind.name.trim_end_matches(MIRRORED)));
@@ -121,6 +126,21 @@ pub fn make_with(path: &Path, options: &MakeOptions, report: &(dyn Fn(Step) -> b
         });
     }
     Ok(Made { set, takes, annotation, found_in: bare, left_out, left_out_props })
+}
+
+/// The takes of all paths, in their order; of one name in one path only.
+fn collect_all(paths: &[&Path]) -> Result<Vec<Collected>> {
+    let mut all: Vec<Collected> = Vec::new();
+    for path in paths {
+        let more = collect(path)?;
+        let twin = |c: &Collected| all.iter().find(|other| other.take.name == c.take.name);
+        if let Some((own, other)) = more.iter().find_map(|c| Some((c, twin(c)?))) {
+            let problem = format!("expected a name of its own, found it in {} as well", other.origin.display());
+            return Err(Error::invalid(own.origin.display().to_string(), format!("take {}", own.take.name), problem));
+        }
+        all.extend(more);
+    }
+    Ok(all)
 }
 
 /// Leaves kinds out that lead out of, or into, the part of the set in which people can go on for ever, as long as they
@@ -204,7 +224,7 @@ impl Made {
 /// As [`make`].
 pub fn cut_folder(folder: &Path, captures: Option<&Path>) -> Result<PatchSet> {
     let cut = CutOptions { captures: captures.map(PathBuf::from), ..Default::default() };
-    Ok(make(folder, &MakeOptions { cut, ..Default::default() })?.set)
+    Ok(make(&[folder], &MakeOptions { cut, ..Default::default() })?.set)
 }
 
 impl PatchSet {

@@ -113,8 +113,9 @@ def tell(found: dict[str, Any]) -> None:
     )
 )
 def patches(
-    source: Annotated[
-        Path, typer.Argument(help="A folder of captures or take files, an index (.csv), a take file, or one capture.")
+    sources: Annotated[
+        list[Path],
+        typer.Argument(help="Folders of captures or take files, indexes (.csv), take files or captures, all together."),
     ],
     out: Annotated[Path, typer.Option("--out", "-o", help="Patch set to write (.patches).")],
     captures: Annotated[Path | None, typer.Option(help="Folder of the captures, if not beside the take files.")] = None,
@@ -146,12 +147,12 @@ def patches(
     options: dict[str, Any] = {"threshold": threshold, "groups": groups, "alone": alone, "touch_gap": touch_gap,
                                "near": near, "compose": expect_compose(compose)}  # fmt: skip
     try:
-        made = make_set(source, captures, **{name: value for name, value in options.items() if value is not None})
+        made = make_set(sources, captures, **{name: value for name, value in options.items() if value is not None})
     except ValueError as error:
         raise typer.BadParameter(str(error)) from None
     if not len(made.set):
         reasons = [f"{names}: {note}" for names, note in notes_of(made.takes)]
-        raise CrowdquiltError(f"{source}: nothing to make patches of: {'; '.join(reasons)}")
+        raise CrowdquiltError(f"{', '.join(map(str, sources))}: nothing to make patches of: {'; '.join(reasons)}")
     out.parent.mkdir(parents=True, exist_ok=True)
     made.set.save(out)
     if plot is not None:

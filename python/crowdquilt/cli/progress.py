@@ -96,7 +96,7 @@ def solve(
         return tile(scene, patches, seed=seed, method=method, time=time, threads=threads, progress=show, **kept)
 
 
-def make_set(source: Path, captures: Path | None, **options: Any) -> Made:
+def make_set(sources: list[Path], captures: Path | None, **options: Any) -> Made:
     """Make a patch set with a progress bar; Ctrl-C stops it."""
     columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(bar_width=24))
     with Bar(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
@@ -105,4 +105,4 @@ def make_set(source: Path, captures: Path | None, **options: Any) -> Made:
         def show(step: tuple[str, float]) -> None:
             bar.update(task, description=step[0], completed=step[1])
 
-        return patch.make(source, captures, progress=show, **options)
+        return patch.make(sources, captures, progress=show, **options)

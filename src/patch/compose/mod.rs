@@ -26,7 +26,7 @@
 //!
 //! | entry | says |
 //! |---|---|
-//! | `clips` | `take` (by name), `person` (0), `from` and `to` (seconds of the take; the first and last port); or `patch` (by name) and `role` (0) |
+//! | `clips` | `take` (by name), `person` (0), `from` and `to` (seconds of the take; the first and last port); or `patch` (by name) and `role` (0); `mirror`: seen in a mirror; `loop`: ends in the pose in which it begins; `end = { ahead, left, turn_deg }` where it is to end, seen from where it begins |
 //! | `roles` | `name`, `plays`, and `start = { x, z, heading_deg, time }` for who is to begin somewhere |
 //! | `places` | where `who` stands `seen_from` another: metres `ahead` and to the `left`, turned by `turn_deg` (180: face to face) |
 //! | `touches` | `a` and `b` (`"ann.right_hand"`), `from` one moment `to` another: hands are led together |
@@ -38,7 +38,7 @@
 //! seconds a place holds all through the clip. Two moments in one place happen at one time.
 //!
 //! Clips are joined at ports of one pose group (`chain`), everybody is placed, and what is still to hold bends paths and
-//! times by the least squares of [`crate::deform::Web`] (`solve`). Boxes tie people together as well (`prop`): who passes a
+//! times by the least squares of [`crate::deform::Web`] (`solve`). A clip that is to end somewhere gets there evenly (`sweep`). Boxes tie people together as well (`prop`): who passes a
 //! box stands where both have it in their hands, who takes it up where it was put down; while it rests it is solved for as
 //! if it were somebody standing there.
 
@@ -53,6 +53,7 @@ mod retime;
 mod row;
 mod solve;
 mod story;
+mod sweep;
 mod text;
 
 use std::path::{Path, PathBuf};
@@ -117,7 +118,7 @@ fn is_compose(path: &Path) -> bool {
 /// As [`add`], without the file's name.
 pub fn compose(text: &str, sources: &[Source], groups: &mut Vec<PoseGroup>) -> Result<PatchKind> {
     let story = Composition::parse(text)?;
-    let clips = story.clips.iter().map(|c| clip::cut(c, sources)).collect::<Result<Vec<_>>>()?;
+    let clips = story.clips.iter().map(|c| clip::cut(c, sources, &story.limits)).collect::<Result<Vec<_>>>()?;
     let chains = story.roles.iter().map(|role| Chain::new(role, &story.clips, &clips)).collect::<Result<Vec<_>>>()?;
     let people = chains.len();
     let props = prop::find(&story, &chains)?;

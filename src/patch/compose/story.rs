@@ -23,6 +23,12 @@ pub(super) struct Composition {
 pub(super) struct Clip {
     pub name: String,
     pub piece: Piece,
+    /// Whether it is seen in a mirror.
+    pub mirror: bool,
+    /// Whether it ends in the pose in which it begins.
+    pub looped: bool,
+    /// Where it ends, seen from where it begins, if not as captured.
+    pub end: Option<Ground>,
     pub line: usize,
 }
 

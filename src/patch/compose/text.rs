@@ -51,6 +51,22 @@ struct ClipText {
     to: Option<f32>,
     patch: Option<String>,
     role: Option<usize>,
+    #[serde(default)]
+    mirror: bool,
+    #[serde(default, rename = "loop")]
+    looped: bool,
+    end: Option<EndText>,
+}
+
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EndText {
+    #[serde(default)]
+    ahead: f32,
+    #[serde(default)]
+    left: f32,
+    #[serde(default)]
+    turn_deg: f32,
 }
 
 #[derive(serde::Deserialize)]
@@ -181,11 +197,19 @@ impl Reader<'_> {
         if let Some(time) = times.into_iter().find(|t| !(0.0..=LARGEST).contains(t)) {
             return Err(bad(line, format!("clip {name}: expected times from 0 to {LARGEST} s, found {time}")));
         }
+        let end = match text.end {
+            None => None,
+            Some(EndText { ahead, left, turn_deg }) => {
+                self.finite(line, &[ahead, left, turn_deg])?;
+                Some(Ground::new(Vec2::new(left, ahead), turn_deg.to_radians()))
+            }
+        };
+        let (mirror, looped) = (text.mirror, text.looped);
         let piece = match text {
-            ClipText { take: Some(take), patch: None, role: None, person, from, to } => {
+            ClipText { take: Some(take), patch: None, role: None, person, from, to, .. } => {
                 Piece::Take { name: take, person: person.unwrap_or(0), from, to }
             }
-            ClipText { patch: Some(patch), role, take: None, person: None, from: None, to: None } => {
+            ClipText { patch: Some(patch), role, take: None, person: None, from: None, to: None, .. } => {
                 Piece::Patch { name: patch, role: role.unwrap_or(0) }
             }
             _ => {
@@ -193,7 +217,7 @@ impl Reader<'_> {
                 return Err(bad(line, format!("clip {name}: {expected}, found another mixture")));
             }
         };
-        Ok(Clip { name, piece, line })
+        Ok(Clip { name, piece, mirror, looped, end, line })
     }
 
     fn role(&self, role: Spanned<RoleText>, clips: &[Clip]) -> Result<Role> {
