@@ -334,7 +334,7 @@ fn compose_files_beside_others_join_the_set() {
     let mut set = sample_set();
     let before = set.clone();
     add(&mut set, std::slice::from_ref(&folder), &SOURCES, &CutOptions::default()).unwrap();
-    assert_eq!(set.kinds.len(), before.kinds.len() + 12, "six, and their mirror images");
+    assert_eq!(set.kinds.len(), before.kinds.len() + 14, "seven, and their mirror images");
     assert_eq!(set.kinds[..before.kinds.len()], before.kinds);
     let kind = |name: &str| set.kinds.iter().find(|k| k.name == name).unwrap();
     let image = mirrored(kind("push-and-stumble"), &mut set.groups.clone());

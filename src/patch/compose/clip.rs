@@ -4,7 +4,7 @@ use super::super::cut::Source;
 use super::story::{Clip, Piece, bad};
 use crate::Result;
 use crate::motion::take::{TakeFile, TakePatch, TakePort};
-use crate::motion::{FPS, Motion};
+use crate::motion::{FPS, Foot, JOINT_COUNT, Motion, arm, mirror};
 
 /// A clip's end moves to a port this near, seconds.
 const NEAR: f32 = 0.25;
@@ -33,8 +33,8 @@ pub(super) struct Grasp {
     pub span: [usize; 2],
     /// Whether it begins and ends there; else it is cut off.
     pub whole: [bool; 2],
-    /// Which take's which prop it is, and the take's frames at which it begins and ends.
-    pub source: ([usize; 2], [usize; 2]),
+    /// Which take's which prop it is, and the take's frames at which it begins and ends; none if no take knows of it.
+    pub source: Option<([usize; 2], [usize; 2])>,
 }
 
 /// Boxes of clips may differ by this much, metres.
@@ -77,7 +77,18 @@ pub(super) fn cut(clip: &Clip, sources: &[Source]) -> Result<Cut> {
     }
     let index = sources.iter().position(|s| std::ptr::eq(s, source)).unwrap_or(0);
     let grasps = grasps(&source.take, index, person, [begin, last]);
-    Ok(Cut { motion: motion.slice(begin, last), entry: from.pose.clone(), exit: to.pose.clone(), grasps })
+    let mut motion = motion.slice(begin, last);
+    clip.arms.into_iter().for_each(|side| mirror_arm(&mut motion, side));
+    Ok(Cut { motion, entry: from.pose.clone(), exit: to.pose.clone(), grasps })
+}
+
+/// Makes the other arm the mirror image of the one on this side.
+fn mirror_arm(motion: &mut Motion, side: Foot) {
+    for pose in motion.rotations.chunks_exact_mut(JOINT_COUNT) {
+        for (joint, other) in arm::joints(side).into_iter().zip(arm::joints(mirror::foot(side))) {
+            pose[other] = mirror::rotation(pose[joint]);
+        }
+    }
 }
 
 type Piecewise<'a> = (&'a Source, usize, Option<f32>, Option<f32>);
@@ -138,7 +149,7 @@ fn grasps(take: &TakeFile, index: usize, person: usize, [begin, last]: [usize; 2
                     seat: prop.seat,
                     span: [from - begin, to - begin],
                     whole: [first > begin, end < last],
-                    source: ([index, p], [first, end]),
+                    source: Some(([index, p], [first, end])),
                 });
             }
         }

@@ -13,7 +13,7 @@ use super::story::{Clip, Composition, Piece, Place, Role, Touches, bad};
 use crate::Result;
 use crate::deform::Limits;
 use crate::geom::Ground;
-use crate::motion::BodyPart;
+use crate::motion::{BodyPart, Foot};
 
 /// Largest number of people, after rows are laid out.
 pub(super) const MOST_PEOPLE: usize = 64;
@@ -51,6 +51,7 @@ struct ClipText {
     to: Option<f32>,
     patch: Option<String>,
     role: Option<usize>,
+    arms: Option<Foot>,
 }
 
 #[derive(serde::Deserialize)]
@@ -176,16 +177,17 @@ impl Reader<'_> {
 
     fn clip(&self, name: String, clip: Spanned<ClipText>) -> Result<Clip> {
         let line = self.line(clip.span());
-        let text = clip.into_inner();
+        let mut text = clip.into_inner();
+        let arms = text.arms.take();
         let times = [text.from, text.to].into_iter().flatten();
         if let Some(time) = times.into_iter().find(|t| !(0.0..=LARGEST).contains(t)) {
             return Err(bad(line, format!("clip {name}: expected times from 0 to {LARGEST} s, found {time}")));
         }
         let piece = match text {
-            ClipText { take: Some(take), patch: None, role: None, person, from, to } => {
+            ClipText { take: Some(take), patch: None, role: None, person, from, to, arms: _ } => {
                 Piece::Take { name: take, person: person.unwrap_or(0), from, to }
             }
-            ClipText { patch: Some(patch), role, take: None, person: None, from: None, to: None } => {
+            ClipText { patch: Some(patch), role, take: None, person: None, from: None, to: None, arms: _ } => {
                 Piece::Patch { name: patch, role: role.unwrap_or(0) }
             }
             _ => {
@@ -193,7 +195,7 @@ impl Reader<'_> {
                 return Err(bad(line, format!("clip {name}: {expected}, found another mixture")));
             }
         };
-        Ok(Clip { name, piece, line })
+        Ok(Clip { name, piece, arms, line })
     }
 
     fn role(&self, role: Spanned<RoleText>, clips: &[Clip]) -> Result<Role> {
