@@ -2,14 +2,16 @@
 
 mod composing;
 
-use composing::{SOURCES, crowd_with, edited, made, sample_set};
-use crowdquilt::geom::Upright;
+use composing::{SOURCES, edited, made, sample_set};
+use crowdquilt::check::check;
+use crowdquilt::geom::{Polygon, Upright};
 use crowdquilt::motion::contacts::palm;
 use crowdquilt::motion::joint::{LEFT_FORE_ARM, LEFT_HAND, RIGHT_FORE_ARM, RIGHT_HAND};
 use crowdquilt::motion::{FPS, limits};
 use crowdquilt::patch::compose::compose;
 use crowdquilt::patch::{PatchKind, PatchProp, Source};
-use glam::{Quat, Vec3};
+use crowdquilt::tiling::{Options, Scene, Status, tile};
+use glam::{Quat, Vec2, Vec3};
 use proptest::prelude::*;
 
 const CARRIED: &str = include_str!("../examples/compose/carry-by-hand.compose.toml");
@@ -34,6 +36,7 @@ held = [{ who = "ann", from = "ann.up@1.25", to = "ann.down@1.35", carried = [
     { at = "ann.up@1.25", up = 0.13, ahead = 0.68 },
     { at = "ann.up@2.55", up = 1.0, ahead = 0.36 },
     { at = "ann.down@0.15", up = 1.0, ahead = 0.36 },
+    { at = "ann.down@0.8", up = 0.6, ahead = 0.65 },
     { at = "ann.down@1.35", up = 0.13, ahead = 0.68 },
 ] }]
 "#;
@@ -169,7 +172,7 @@ fn boxes_that_nobody_can_carry_so_are_refused_with_their_line() {
     fails_carried("ann@0\"", "ann\"", &["line 15", "a moment (with @)", "'ann'"]);
     fails_carried("ann@0\"", "ann@90\"", &["line 15", "expected a moment within", "'ann@90'"]);
     fails_carried("up = 1.0", "up = nan", &["line 15", "'ann@0'", "within 3 m", "NaN"]);
-    fails_carried("up = 1.0", "up = 1.0, left = 1", &["line 15"]);
+    fails_carried("up = 1.0", "up = 1.0, left = 1", &["line 19", "carried (at, up, ahead)"]);
     fails_carried("size = [0.36, 0.26, 0.30]", "", &["line 15", "the box's size"]);
     fails_carried("held =", "sat =", &["line 15", "carried", "sat on"]);
     fails_carried(
@@ -188,9 +191,19 @@ fn boxes_that_nobody_can_carry_so_are_refused_with_their_line() {
 
 #[test]
 fn crowds_are_tiled_with_it() {
-    let (crowd, name) = crowd_with(CARRIED, 11.0, 8, 20.0, 0.0);
-    let composed = crowd.instances.iter().filter(|i| crowd.set.kinds[i.kind as usize].name == name).count();
-    assert!(composed >= 1 && !crowd.props.is_empty(), "{name}: {composed} instances");
+    let mut set = sample_set();
+    set.kinds.retain(|k| k.name.starts_with("carry-"));
+    let kind = compose(CARRIED, &SOURCES, &mut set.groups).unwrap();
+    set.kinds.push(kind);
+    assert!(set.validate().is_empty(), "{:?}", set.validate());
+    let region = Polygon::rectangle(Vec2::ZERO, Vec2::splat(10.0));
+    let scene = Scene { region, characters: 8, duration_secs: 20.0, interaction: 0.0, ..Scene::demo() };
+    let outcome = tile(&scene, &set, &Options { seed: 1, ..Options::default() }, &mut |_| true).unwrap();
+    let report = check(&outcome.crowd);
+    assert!(report.ok() && outcome.status == Status::Perfect, "{report}");
+    assert_eq!(outcome.crowd.props.len(), 8, "a box each");
+    let kinds = outcome.crowd.instances.iter().map(|i| outcome.crowd.set.kinds[i.kind as usize].name.as_str());
+    assert!(kinds.clone().any(|name| name == "carry-by-hand"), "{:?}", kinds.collect::<Vec<_>>());
 }
 
 proptest! {

@@ -31,7 +31,10 @@ fn a_second() -> f32 {
 }
 
 #[derive(serde::Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "expected a role's name, or a table with who, from, to, turn_deg, carried (at, up, ahead), found another"
+)]
 enum UseText {
     Who(String),
     When(UseTable),
