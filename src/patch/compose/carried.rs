@@ -14,9 +14,9 @@ use crate::motion::contacts::{PALM_DEPTH, palm, palm_in_hand};
 use crate::motion::{Foot, JOINT_COUNT, Motion, arm, canonical};
 
 /// Frames over which hands reach for a box before they have it, and over which they leave it.
-const REACH: usize = 20;
+const REACH: usize = 26;
 /// Hands that reach for a box are farther apart than on it by up to this much on either side, metres.
-const OPEN: f32 = 0.07;
+const OPEN: f32 = 0.14;
 /// Palms may be this far from where they hold a box, metres.
 const MISS: f32 = 0.01;
 /// Where elbows point in the chest's frame, for the left one: close, down, back.
