@@ -12,7 +12,7 @@ use crowdquilt::motion::contacts::palm;
 use crowdquilt::motion::{FPS, JOINT_COUNT, Motion, joint};
 use crowdquilt::patch::compose::{add, compose};
 use crowdquilt::patch::{CutOptions, PatchKind, PatchSet, mirrored};
-use glam::Vec2;
+use glam::{Quat, Vec2};
 use proptest::prelude::*;
 
 const MEET: &str = include_str!("../examples/compose/meet-and-bow.compose.toml");
@@ -326,6 +326,22 @@ proptest! {
             prop_assert!(error.to_string().starts_with("compose file: line "), "{error}");
         }
     }
+}
+
+#[test]
+fn one_arm_mirrors_the_other() {
+    let with = |arms: &str| made(&MEET.replace("bow = { patch = \"bow-stand\", role = 0 }", arms));
+    let bow = with("bow = { patch = \"bow-stand\", role = 0, arms = \"left\" }").unwrap();
+    let (own, plain) = (&bow.fragments[0].motion, &made(MEET).unwrap().fragments[0].motion);
+    let image = |q: Quat| Quat::from_xyzw(q.x, -q.y, -q.z, q.w);
+    let frame = plain.len() / 2;
+    for left in [joint::LEFT_ARM, joint::LEFT_FORE_ARM, joint::LEFT_HAND] {
+        let [pose, before] = [own, plain].map(|m| m.pose(frame));
+        assert_eq!(pose[left], before[left], "the left arm is as captured");
+        assert!(pose[joint::mirror(left)].angle_between(image(pose[left])) < 1e-3, "joint {left}");
+    }
+    let wrong = with("bow = { patch = \"bow-stand\", role = 0, arms = \"both\" }").unwrap_err().to_string();
+    assert!(wrong.contains("line 8") && wrong.contains("both"), "{wrong}");
 }
 
 #[test]
