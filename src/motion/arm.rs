@@ -42,13 +42,7 @@ pub(crate) fn shrug(globals: &[(Vec3, Quat)], side: Foot, palm: Vec3) -> Quat {
 /// Local rotations of upper arm, forearm and hand that bring the wrist to a place, or as near as the arm is long, and the
 /// hand to a global rotation; the elbow is a hinge, the hand's twist shared with the forearm. `elbow_left` is where it
 /// points in the chest's frame, for the left arm (mirrored for the right); `globals` are those of the body's joints.
-pub(crate) fn reach(
-    globals: &[(Vec3, Quat)],
-    side: Foot,
-    wrist: Vec3,
-    hand_turn: Quat,
-    elbow_left: Vec3,
-) -> [Quat; 3] {
+pub(crate) fn reach(globals: &[(Vec3, Quat)], side: Foot, wrist: Vec3, hand_turn: Quat, elbow_left: Vec3) -> [Quat; 3] {
     let [girdle, upper, lower, hand] = joints(side);
     let sign = sign(side);
     let (shoulder, chest) = (globals[upper].0, globals[SPINE2].1);

@@ -125,10 +125,8 @@ pub(super) fn plant(pose: &mut [Quat], globals: &[(Vec3, Quat)], ankle: usize, s
         bent = leg.bend(globals, ankle, foot);
     }
     let (up, knee, toe) = (ankle - 2, ankle - 1, ankle + 1);
-    let overturned = [
-        turn_to(pose, up, globals[0].1.inverse() * bent.up),
-        turn_to(pose, knee, bent.up.inverse() * bent.knee),
-    ];
+    let overturned =
+        [turn_to(pose, up, globals[0].1.inverse() * bent.up), turn_to(pose, knee, bent.up.inverse() * bent.knee)];
     pose[ankle] = (bent.knee.inverse() * foot).normalize();
     // The toes stay on the floor, as far as they bend.
     let flat = (foot.inverse() * globals[toe].1).normalize();

@@ -121,7 +121,8 @@ fn is_compose(path: &Path) -> bool {
 pub fn compose(text: &str, sources: &[Source], groups: &mut Vec<PoseGroup>) -> Result<PatchKind> {
     let story = Composition::parse(text)?;
     let clips = story.clips.iter().map(|c| clip::cut(c, sources)).collect::<Result<Vec<_>>>()?;
-    let mut chains = story.roles.iter().map(|role| Chain::new(role, &story.clips, &clips)).collect::<Result<Vec<_>>>()?;
+    let mut chains =
+        story.roles.iter().map(|role| Chain::new(role, &story.clips, &clips)).collect::<Result<Vec<_>>>()?;
     let people = chains.len();
     let props = prop::find(&story, &chains)?;
     carried::lead(&story, &props, &mut chains)?;

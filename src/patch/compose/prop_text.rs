@@ -105,9 +105,7 @@ impl UseText {
         }
         let who = names.moment(&who, line)?;
         let moment = |text: &str| match names.moment(text, line)? {
-            moment if moment.seconds.is_none() => {
-                Err(bad(line, format!("expected a moment (with @), found '{text}'")))
-            }
+            moment if moment.seconds.is_none() => Err(bad(line, format!("expected a moment (with @), found '{text}'"))),
             moment if moment.role != who.role => {
                 Err(bad(line, format!("expected moments of '{}', found '{text}'", who.text)))
             }
