@@ -12,7 +12,7 @@ use crowdquilt::motion::contacts::palm;
 use crowdquilt::motion::{FPS, JOINT_COUNT, Motion, MotionPath, joint};
 use crowdquilt::patch::compose::{add, compose};
 use crowdquilt::patch::{CutOptions, PatchKind, PatchSet, mirrored};
-use glam::Vec2;
+use glam::{Quat, Vec2};
 use proptest::prelude::*;
 
 const MEET: &str = include_str!("../examples/compose/meet-and-bow.compose.toml");
@@ -336,6 +336,24 @@ fn a_clip_may_be_seen_in_a_mirror() {
     assert_ne!(seen.fragments[0].entry_group, plain.fragments[0].entry_group);
 }
 
+#[test]
+fn a_clip_may_end_as_it_begins() {
+    // From the left foot to the right one: no two poses are less alike.
+    let text = one_walker().replacen("walk-1.15-cycle\"", "walk-1.15-half\"", 1);
+    let gap = |text: &str| {
+        let motion = made(text).unwrap().fragments[0].motion.clone();
+        let last = motion.len() - 1;
+        let between = |a: usize, b: usize| {
+            motion.pose(a).iter().zip(motion.pose(b)).map(|(p, q)| p.angle_between(*q)).fold(0.0, f32::max)
+        };
+        let steps = (0..last).map(|f| between(f, f + 1)).fold(0.0, f32::max);
+        (between(0, last), (motion.heights[0] - motion.heights[last]).abs(), steps)
+    };
+    let (free, led) = (gap(&text), gap(&text.replacen("half\"", "half\", loop = true", 1)));
+    assert!(free.0 > 0.3 && led.0 < 1e-3 && led.1 < 1e-4, "{free:?} {led:?}");
+    assert!(led.2 < 1.6 * free.2, "nothing jumps: {free:?} {led:?}");
+}
+
 /// Two who bow, and then have got so much farther apart than they would walk by themselves.
 fn parting(by: f32) -> String {
     let kind = made(MEET).unwrap();
@@ -373,12 +391,28 @@ proptest! {
 }
 
 #[test]
+fn one_arm_mirrors_the_other() {
+    let with = |arms: &str| made(&MEET.replace("bow = { patch = \"bow-stand\", role = 0 }", arms));
+    let bow = with("bow = { patch = \"bow-stand\", role = 0, arms = \"left\" }").unwrap();
+    let (own, plain) = (&bow.fragments[0].motion, &made(MEET).unwrap().fragments[0].motion);
+    let image = |q: Quat| Quat::from_xyzw(q.x, -q.y, -q.z, q.w);
+    let frame = plain.len() / 2;
+    for left in [joint::LEFT_ARM, joint::LEFT_FORE_ARM, joint::LEFT_HAND] {
+        let [pose, before] = [own, plain].map(|m| m.pose(frame));
+        assert_eq!(pose[left], before[left], "the left arm is as captured");
+        assert!(pose[joint::mirror(left)].angle_between(image(pose[left])) < 1e-3, "joint {left}");
+    }
+    let wrong = with("bow = { patch = \"bow-stand\", role = 0, arms = \"both\" }").unwrap_err().to_string();
+    assert!(wrong.contains("line 8") && wrong.contains("both"), "{wrong}");
+}
+
+#[test]
 fn compose_files_beside_others_join_the_set() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/compose");
     let mut set = sample_set();
     let before = set.clone();
     add(&mut set, std::slice::from_ref(&folder), &SOURCES, &CutOptions::default()).unwrap();
-    assert_eq!(set.kinds.len(), before.kinds.len() + 12, "six, and their mirror images");
+    assert_eq!(set.kinds.len(), before.kinds.len() + 14, "seven, and their mirror images");
     assert_eq!(set.kinds[..before.kinds.len()], before.kinds);
     let kind = |name: &str| set.kinds.iter().find(|k| k.name == name).unwrap();
     let image = mirrored(kind("push-and-stumble"), &mut set.groups.clone());

@@ -50,8 +50,6 @@ __all__ = [
 AnyPath = str | PathLike[str]
 
 
-def cut(
-    source: AnyPath | Sequence[AnyPath], captures: AnyPath | None = None, *, study: bool = True
-) -> PatchSet:
+def cut(source: AnyPath | Sequence[AnyPath], captures: AnyPath | None = None, *, study: bool = True) -> PatchSet:
     """Make the patch set of captures; see `make`, which also tells how it came about."""
     return make(source, captures, study=study).set

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -142,6 +143,15 @@ def test_events_are_explained_by_a_picture(bare: Path, tmp_path: Path) -> None:
     assert picture.stat().st_size > 50_000
     done = crowdquilt("patches", bare, "-o", tmp_path / "y.patches", "--plot", tmp_path / "events.doc", "-q")
     assert done.returncode == 2 and "expected a picture" in done.stderr and not (tmp_path / "y.patches").exists()
+
+
+def test_several_sources_make_one_set(bare: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other.bvh"
+    shutil.copy(next(bare.glob("*.bvh")), other)
+    made, alone = cq.patch.make([bare, other], study=False), cq.patch.make(bare, study=False)
+    assert [take.name for take in made.takes] == [*(take.name for take in alone.takes), "other"]
+    done = crowdquilt("patches", bare, bare, "-o", tmp_path / "x.patches", "-q")
+    assert done.returncode != 0 and "a name of its own" in done.stderr and not (tmp_path / "x.patches").exists()
 
 
 def test_signals_are_those_that_thresholds_are_held_against(bare: Path) -> None:

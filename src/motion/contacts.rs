@@ -49,10 +49,17 @@ pub fn detect(motions: &[Motion], options: &ContactOptions) -> Vec<TakeContact> 
     contacts
 }
 
+/// From the middle of a hand to the palm's surface, metres.
+pub(crate) const PALM_DEPTH: f32 = 0.012;
+
 /// Centre of a hand's palm: half-way along the hand.
 pub fn palm(globals: &[(Vec3, Quat)], hand: usize) -> Vec3 {
-    let tip = canonical().joints[hand].tip.expect("hands have tips");
-    globals[hand].0 + globals[hand].1 * (0.5 * tip)
+    globals[hand].0 + globals[hand].1 * palm_in_hand(hand)
+}
+
+/// The same in the hand's own frame.
+pub(crate) fn palm_in_hand(hand: usize) -> Vec3 {
+    0.5 * canonical().joints[hand].tip.expect("hands have tips")
 }
 
 /// The palm of a hand at every frame. O(frames).

@@ -5,6 +5,9 @@ use glam::{Quat, Vec3};
 /// How far the pole pulls the knee of a nearly straight limb, metres: bent further than this, the limb's own bend rules.
 const POLE_PULL: f32 = 0.04;
 
+/// The most a knee or an elbow bends, radians.
+const FOLD: f32 = 2.5;
+
 /// Bends and swings a two-bone limb so that its end reaches `target`, or points at it where it is out of reach.
 ///
 /// `hip`, `knee`, `end` are the limb's present global positions (m). The limb keeps its bend plane; `pole` (a global
@@ -32,6 +35,19 @@ pub fn two_bone(hip: Vec3, knee: Vec3, end: Vec3, target: Vec3, pole: Vec3, stre
     let swing = twist((new_knee - hip) / upper.max(1e-6), swing * hinges[0], hinges[1], bulge.length_squared()) * swing;
     let bend = swing.inverse() * rotation_between(swing * (end - knee), new_end - new_knee) * swing;
     (swing, bend, new_end)
+}
+
+/// The middle and end of a two-bone limb from `root` towards `target`, bent towards `pole`.
+///
+/// At most `stretch` of the limb's length is used; a target further away is pointed at.
+pub(crate) fn bend(root: Vec3, target: Vec3, upper: f32, lower: f32, pole: Vec3, stretch: f32) -> (Vec3, Vec3) {
+    let line = (target - root).try_normalize().unwrap_or(Vec3::NEG_Y);
+    let folded = (upper * upper + lower * lower - 2.0 * upper * lower * (std::f32::consts::PI - FOLD).cos()).sqrt();
+    let reach = (target - root).length().clamp(folded, (upper + lower) * stretch);
+    let side = (pole - line * pole.dot(line)).try_normalize().unwrap_or_else(|| line.any_orthonormal_vector());
+    let along = (upper * upper - lower * lower + reach * reach) / (2.0 * reach);
+    let out = (upper * upper - along * along).max(0.0).sqrt();
+    (root + line * along + side * out, root + line * reach)
 }
 
 /// The turn about the upper bone (its direction) that brings the hinge's axis `from` to `to`, less of it the less the knee was off the

@@ -21,7 +21,7 @@ pub fn motion(motion: &Motion) -> Motion {
 }
 
 /// The rotation seen in that mirror.
-fn rotation(q: Quat) -> Quat {
+pub(crate) fn rotation(q: Quat) -> Quat {
     Quat::from_xyzw(q.x, -q.y, -q.z, q.w)
 }
 

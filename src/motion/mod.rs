@@ -1,5 +1,6 @@
 //! Skeleton, pose, clip, take; importers, retargeting, foot plants.
 
+pub(crate) mod arm;
 pub mod asfamc;
 mod body;
 mod build;
@@ -32,6 +33,7 @@ pub(crate) mod testing;
 pub mod together;
 
 pub(crate) use build::{ANKLE_HEIGHT, BuildRows};
+pub(crate) use skeleton::bone_length;
 
 pub use body::{BODY_CAPSULES, BodyCapsule, BodyPart, body_capsules, shape};
 pub use build::{Build, Flesh, Proportions};

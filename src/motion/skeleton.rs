@@ -137,6 +137,11 @@ pub fn canonical() -> &'static Skeleton {
     &CANONICAL
 }
 
+/// Length of the bone that ends at a joint of the canonical skeleton, metres.
+pub(crate) fn bone_length(joint: JointId) -> f32 {
+    canonical().joints[joint].offset.length()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -93,7 +93,7 @@ impl Leg {
 pub(super) struct Planted {
     /// How far the foot falls short of its place, metres.
     missed: f32,
-    /// How much further beyond its limits the hip is turned than before, radians.
+    /// How much further beyond its limits the hip or the knee is turned than before, radians.
     overturned: f32,
 }
 
@@ -125,16 +125,21 @@ pub(super) fn plant(pose: &mut [Quat], globals: &[(Vec3, Quat)], ankle: usize, s
         bent = leg.bend(globals, ankle, foot);
     }
     let (up, knee, toe) = (ankle - 2, ankle - 1, ankle + 1);
-    let hip = (globals[0].1.inverse() * bent.up).normalize();
-    let over = excess(up, hip);
-    let overturned = if over > MAX_OVERTURN { over - excess(up, pose[up]) } else { 0.0 };
-    pose[up] = hip;
-    pose[knee] = (bent.up.inverse() * bent.knee).normalize();
+    let overturned =
+        [turn_to(pose, up, globals[0].1.inverse() * bent.up), turn_to(pose, knee, bent.up.inverse() * bent.knee)];
     pose[ankle] = (bent.knee.inverse() * foot).normalize();
     // The toes stay on the floor, as far as they bend.
     let flat = (foot.inverse() * globals[toe].1).normalize();
     pose[toe] = hold_back(toe, flat, || excess(toe, pose[toe]));
-    Planted { missed: bent.missed, overturned }
+    Planted { missed: bent.missed, overturned: overturned[0].max(overturned[1]) }
+}
+
+/// Turns a joint, and answers how much further it is beyond its limits than before, if that is much, radians.
+fn turn_to(pose: &mut [Quat], joint: usize, to: Quat) -> f32 {
+    let to = to.normalize();
+    let over = excess(joint, to);
+    let before = std::mem::replace(&mut pose[joint], to);
+    if over > MAX_OVERTURN { over - excess(joint, before) } else { 0.0 }
 }
 
 /// Bends the toes up where their tip would be more than [`TOE_SLACK`] below the floor once the foot is moved up by

@@ -15,7 +15,7 @@ use super::carry::ground_at;
 use super::{Body, Segment, smoothstep};
 use crate::geom::{Upright, wrap_angle};
 use crate::motion::JointId;
-use crate::motion::contacts::palm;
+use crate::motion::contacts::{PALM_DEPTH, palm};
 use crate::motion::joint::{LEFT_HAND, RIGHT_HAND};
 use crate::patch::PatchProp;
 use crate::stage::{Holding, Prop};
@@ -26,8 +26,6 @@ const FADE_FRAMES: i32 = 8;
 const LIFT_FRAMES: f32 = 8.0;
 /// Most that a hand is led aside, metres.
 const MAX_SHIFT: f32 = 0.15;
-/// From the middle of a hand to the palm's surface, metres.
-const PALM_DEPTH: f32 = 0.012;
 const HANDS: [JointId; 2] = [LEFT_HAND, RIGHT_HAND];
 
 /// A box's place in the order of all: those that are held first, each by who is the first in number to hold it, that

@@ -6,10 +6,11 @@ use super::actor::{Actor, NEVER, other, secs};
 use super::flight::Flight;
 use super::footsteps::{Base, FootPose, Hop, pitched};
 use super::gesture::{Grip, Relative};
-use super::posture::{Channel::*, side_sign};
+use super::posture::Channel::*;
 use super::timeline::Span;
 use crate::geom::Ground;
 use crate::motion::Foot;
+use crate::motion::arm::sign;
 
 /// Frames of a hop from mid-stance to mid-stance: when the foot leaves, lands, and carries the body over it.
 pub(super) const HOP: [i32; 3] = [5, 11, 16];
@@ -149,7 +150,7 @@ pub(super) fn held_foot(actor: &Actor, foot: usize, t: f32, at: Ground, hips: f3
     let held = actor.held_legs.iter().filter(|(leg, _)| *leg as usize == foot);
     held.fold(pose, |pose, (leg, span)| {
         let weight = span.weight(t);
-        let place = at.apply(glam::Vec2::new(side_sign(*leg) * HELD[0], HELD[1]));
+        let place = at.apply(glam::Vec2::new(sign(*leg) * HELD[0], HELD[1]));
         let ankle = Vec3::new(place.x, hips - HELD_DROP, place.y);
         FootPose {
             ankle: pose.ankle.lerp(ankle, weight),

@@ -11,9 +11,10 @@ use super::gait::{GaitPose, gait_pose};
 use super::gesture::{hanging, set_arm};
 use super::hopping::{held_foot, held_share};
 use super::path::Path;
-use super::posture::{Body, Channel, Channels, side_sign};
+use super::posture::{Body, Channel, Channels};
 use super::timeline::{Span, Wander, blur, lerp, signed, unit};
 use crate::geom::{Ground, Turn, wrap_angle};
+use crate::motion::arm::sign;
 use crate::motion::{Clip, Foot, canonical, joint::*};
 
 /// Frames per second of the written captures.
@@ -164,7 +165,7 @@ fn settle_heights(frames: &mut [Frame]) {
 fn highest(f: &Frame) -> f32 {
     let limit = STRETCH * (0.42 + 0.41);
     let over = |i: usize| {
-        let joint = f.pelvis * Vec3::new(side_sign(SIDES[i]) * 0.09, -0.03, 0.0);
+        let joint = f.pelvis * Vec3::new(sign(SIDES[i]) * 0.09, -0.03, 0.0);
         let ankle = f.feet[i].ankle;
         let across = Vec2::new(f.hips.x + joint.x - ankle.x, f.hips.y + joint.z - ankle.z).length().min(limit * 0.98);
         ankle.y + (limit * limit - across * across).sqrt() - joint.y
@@ -177,7 +178,7 @@ fn pose(actor: &Actor, me: usize, paths: &[Path], f: &Frame, temper: &Temper) ->
     let at = path.at(f.t);
     let mut body = Body::new(Vec3::new(f.hips.x, f.height, f.hips.y), f.pelvis);
     for (i, side) in SIDES.into_iter().enumerate() {
-        let out = side_sign(side) * f.channels[[Channel::KneeOutLeft, Channel::KneeOutRight][i]];
+        let out = sign(side) * f.channels[[Channel::KneeOutLeft, Channel::KneeOutRight][i]];
         let pole = Quat::from_rotation_y(out)
             * (0.6 * (f.feet[i].rotation * Vec3::Z).with_y(0.0).normalize_or_zero()
                 + 0.4 * (f.pelvis * Vec3::Z).with_y(0.0).normalize_or_zero());
@@ -189,7 +190,7 @@ fn pose(actor: &Actor, me: usize, paths: &[Path], f: &Frame, temper: &Temper) ->
     set_head(&mut body, f, at.heading, looks, temper);
     for (i, side) in SIDES.into_iter().enumerate() {
         let shrug = f.channels[[Channel::ShrugLeft, Channel::ShrugRight][i]] + 0.008 * temper.breathing(f.t);
-        body.local[[LEFT_SHOULDER, RIGHT_SHOULDER][i]] = Quat::from_rotation_z(side_sign(side) * (shrug - 0.05));
+        body.local[[LEFT_SHOULDER, RIGHT_SHOULDER][i]] = Quat::from_rotation_z(sign(side) * (shrug - 0.05));
     }
     body.refresh();
     for (i, side) in SIDES.into_iter().enumerate() {
@@ -201,7 +202,7 @@ fn pose(actor: &Actor, me: usize, paths: &[Path], f: &Frame, temper: &Temper) ->
 /// The knee looks ahead as the foot does; when the thigh is raised beyond level, upwards.
 fn knee_pole(forward: Vec3, body: &Body, i: usize) -> Vec3 {
     let low = (0.55 - body.root.y).clamp(0.0, 0.5) * 2.0;
-    forward * (1.0 - 0.5 * low) + Vec3::Y * low + body.rotation(HIPS) * Vec3::X * (0.1 * low * side_sign(SIDES[i]))
+    forward * (1.0 - 0.5 * low) + Vec3::Y * low + body.rotation(HIPS) * Vec3::X * (0.1 * low * sign(SIDES[i]))
 }
 
 fn spine(f: &Frame, heading: f32, (look_yaw, _): (f32, f32), temper: &Temper) -> Quat {

@@ -3,7 +3,8 @@
 use glam::{Mat3, Quat, Vec3};
 
 use super::footsteps::FootPose;
-use crate::motion::{Foot, JOINT_COUNT, canonical, joint::*};
+use crate::motion::ik::bend;
+use crate::motion::{Foot, JOINT_COUNT, bone_length, canonical, joint::*};
 
 /// What pulses may add to the body's posture. Angles in radians, lengths in metres.
 ///
@@ -64,29 +65,12 @@ impl std::ops::IndexMut<Channel> for Channels {
     }
 }
 
-/// Mirrors a rotation across the body's middle plane.
-pub(super) fn mirrored(q: Quat) -> Quat {
-    Quat::from_xyzw(q.x, -q.y, -q.z, q.w)
-}
-
-pub(super) fn side_sign(side: Foot) -> f32 {
-    if side == Foot::Left { 1.0 } else { -1.0 }
-}
-
-/// Joints of a leg or arm on one side: (upper, lower, end).
+/// Joints of a leg on one side: upper, lower, foot, toe.
 pub(super) fn leg(side: Foot) -> [usize; 4] {
     if side == Foot::Left {
         [LEFT_UP_LEG, LEFT_LEG, LEFT_FOOT, LEFT_TOE]
     } else {
         [RIGHT_UP_LEG, RIGHT_LEG, RIGHT_FOOT, RIGHT_TOE]
-    }
-}
-
-pub(super) fn arm(side: Foot) -> [usize; 4] {
-    if side == Foot::Left {
-        [LEFT_SHOULDER, LEFT_ARM, LEFT_FORE_ARM, LEFT_HAND]
-    } else {
-        [RIGHT_SHOULDER, RIGHT_ARM, RIGHT_FORE_ARM, RIGHT_HAND]
     }
 }
 
@@ -153,29 +137,9 @@ impl Body {
     }
 }
 
-pub(super) fn bone_length(joint: usize) -> f32 {
-    canonical().joints[joint].offset.length()
-}
-
 /// The rotation whose y axis is `up` and whose z axis is `forward` as far as that goes.
 fn frame(up: Vec3, forward: Vec3) -> Quat {
     let y = up.normalize();
     let z = (forward - y * forward.dot(y)).try_normalize().unwrap_or_else(|| y.any_orthonormal_vector());
     Quat::from_mat3(&Mat3::from_cols(y.cross(z), y, z))
-}
-
-/// The most a knee or an elbow bends, radians.
-const FOLD: f32 = 2.5;
-
-/// The middle and end of a two-bone limb from `root` towards `target`, bent towards `pole`.
-///
-/// At most `stretch` of the limb's length is used; a target further away is pointed at.
-pub(super) fn bend(root: Vec3, target: Vec3, upper: f32, lower: f32, pole: Vec3, stretch: f32) -> (Vec3, Vec3) {
-    let line = (target - root).try_normalize().unwrap_or(Vec3::NEG_Y);
-    let folded = (upper * upper + lower * lower - 2.0 * upper * lower * (std::f32::consts::PI - FOLD).cos()).sqrt();
-    let reach = (target - root).length().clamp(folded, (upper + lower) * stretch);
-    let side = (pole - line * pole.dot(line)).try_normalize().unwrap_or_else(|| line.any_orthonormal_vector());
-    let along = (upper * upper - lower * lower + reach * reach) / (2.0 * reach);
-    let out = (upper * upper - along * along).max(0.0).sqrt();
-    (root + line * along + side * out, root + line * reach)
 }

@@ -1,4 +1,5 @@
 //! What tests of composed patches share: clips of the generated samples, edits of a file, crowds tiled with a patch.
+#![allow(dead_code)]
 
 use std::sync::LazyLock;
 

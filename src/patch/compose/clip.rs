@@ -1,14 +1,12 @@
 //! Clips: pieces of takes, from port to port.
 
-use glam::{Quat, Vec3};
-
 use super::super::cut::Source;
+use super::edit::edit;
 use super::story::{Clip, Piece, bad};
-use super::sweep::sweep;
 use crate::Result;
 use crate::deform::Limits;
 use crate::motion::take::{TakeFile, TakePatch, TakePort};
-use crate::motion::{FPS, JOINT_COUNT, Motion, fade, mirror};
+use crate::motion::{FPS, Motion, mirror};
 
 /// A clip's end moves to a port this near, seconds.
 const NEAR: f32 = 0.25;
@@ -37,8 +35,8 @@ pub(super) struct Grasp {
     pub span: [usize; 2],
     /// Whether it begins and ends there; else it is cut off.
     pub whole: [bool; 2],
-    /// Which take's which prop it is, and the take's frames at which it begins and ends.
-    pub source: ([usize; 2], [usize; 2]),
+    /// Which take's which prop it is, and the take's frames at which it begins and ends; none if no take knows of it.
+    pub source: Option<([usize; 2], [usize; 2])>,
 }
 
 /// Boxes of clips may differ by this much, metres.
@@ -82,36 +80,8 @@ pub(super) fn cut(clip: &Clip, sources: &[Source], limits: &Limits) -> Result<Cu
     let index = sources.iter().position(|s| std::ptr::eq(s, source)).unwrap_or(0);
     let grasps = grasps(&source.take, index, person, [begin, last]);
     let (motion, ends) = (motion.slice(begin, last), [&from.pose, &to.pose]);
-    let (motion, [entry, exit]) = match clip.mirror {
-        true => (mirror::motion(&motion), ends.map(|pose| mirror::group(pose))),
-        false => (motion, ends.map(String::clone)),
-    };
-    let motion = if clip.looped { looped(motion) } else { motion };
-    Ok(Cut { motion: sweep(clip, motion, limits)?, entry, exit, grasps })
-}
-
-/// A motion that ends in the pose in which it begins, and as fast: what is missing is spread over all of it, as between
-/// two motions that follow each other ([`fade`]).
-fn looped(mut motion: Motion) -> Motion {
-    let last = motion.len() - 1;
-    let turns = |from: usize, to: usize| -> Vec<Vec3> {
-        motion.pose(from).iter().zip(motion.pose(to)).map(|(&a, &b)| fade::turn_from(a, b)).collect()
-    };
-    let heights = motion.heights.clone();
-    let rise = |from: usize, to: usize| heights[to] - heights[from];
-    let (turn, begin, end) = (turns(last, 0), turns(0, 1), turns(last - 1, last));
-    for frame in 0..=last {
-        let (before, after) =
-            (fade::before(0.5, last as f32, (last - frame) as f32), fade::after(0.5, last as f32, frame as f32));
-        let (value, rate) = (before.0 + after.0, before.1 + after.1);
-        motion.heights[frame] += value * rise(last, 0) + rate * (rise(0, 1) - rise(last - 1, last));
-        for joint in 0..JOINT_COUNT {
-            let change = turn[joint] * value + (begin[joint] - end[joint]) * rate;
-            let pose = &mut motion.rotations[frame * JOINT_COUNT + joint];
-            *pose = (Quat::from_scaled_axis(change) * *pose).normalize();
-        }
-    }
-    motion
+    let [entry, exit] = ends.map(|pose| if clip.mirror { mirror::group(pose) } else { pose.clone() });
+    Ok(Cut { motion: edit(clip, motion, limits)?, entry, exit, grasps })
 }
 
 type Piecewise<'a> = (&'a Source, usize, Option<f32>, Option<f32>);
@@ -172,7 +142,7 @@ fn grasps(take: &TakeFile, index: usize, person: usize, [begin, last]: [usize; 2
                     seat: prop.seat,
                     span: [from - begin, to - begin],
                     whole: [first > begin, end < last],
-                    source: ([index, p], [first, end]),
+                    source: Some(([index, p], [first, end])),
                 });
             }
         }

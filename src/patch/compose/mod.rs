@@ -26,11 +26,12 @@
 //!
 //! | entry | says |
 //! |---|---|
-//! | `clips` | `take` (by name), `person` (0), `from` and `to` (seconds of the take; the first and last port); or `patch` (by name) and `role` (0); `mirror`: seen in a mirror; `loop`: ends in the pose in which it begins; `end = { ahead, left, turn_deg }` where it is to end, seen from where it begins |
+//! | `clips` | `take` (by name), `person` (0), `from` and `to` (seconds of the take; the first and last port); or `patch` (by name) and `role` (0); `mirror`: seen in a mirror; `arms`: which one the other is to mirror; `loop`: ends in the pose in which it begins; `end = { ahead, left, turn_deg }` where it is to end, seen from where it begins |
 //! | `roles` | `name`, `plays`, and `start = { x, z, heading_deg, time }` for who is to begin somewhere |
 //! | `places` | where `who` stands `seen_from` another: metres `ahead` and to the `left`, turned by `turn_deg` (180: face to face) |
 //! | `touches` | `a` and `b` (`"ann.right_hand"`), `from` one moment `to` another: hands are led together |
 //! | `props` | a box: `name`, by whom it is `held` or `sat` on, one after the other; `rest` (seconds; 1) where one puts it down and the next takes it up |
+//! | `carried` | in an entry of `held`: where they have a box that their clips know nothing of, at some moments: metres `up` from the ground, `ahead` of the hips |
 //! | `row` | `roles` of which there are `count`, each beside the one before by `spacing` metres, acting `delay` seconds later |
 //! | `limits` | how far clips may be deformed: `"tight"` (the default) or `"published"` |
 //!
@@ -38,13 +39,16 @@
 //! seconds a place holds all through the clip. Two moments in one place happen at one time.
 //!
 //! Clips are joined at ports of one pose group (`chain`), everybody is placed, and what is still to hold bends paths and
-//! times by the least squares of [`crate::deform::Web`] (`solve`). A clip that is to end somewhere gets there evenly (`sweep`). Boxes tie people together as well (`prop`): who passes a
-//! box stands where both have it in their hands, who takes it up where it was put down; while it rests it is solved for as
-//! if it were somebody standing there.
+//! times by the least squares of [`crate::deform::Web`] (`solve`). A clip that is to end somewhere
+//! gets there evenly (`sweep`). Boxes tie people together as well (`prop`): who passes a box stands where both have it in their hands, who takes it up where it was put down; while it rests it is solved for as
+//! if it were somebody standing there. Where the clips know of none, arms are led onto it first (`carried`), and ports with
+//! it in the hands are those of people who carry.
 
+mod carried;
 mod chain;
 mod clear;
 mod clip;
+mod edit;
 mod hands;
 mod moment;
 mod prop;
@@ -119,9 +123,11 @@ fn is_compose(path: &Path) -> bool {
 pub fn compose(text: &str, sources: &[Source], groups: &mut Vec<PoseGroup>) -> Result<PatchKind> {
     let story = Composition::parse(text)?;
     let clips = story.clips.iter().map(|c| clip::cut(c, sources, &story.limits)).collect::<Result<Vec<_>>>()?;
-    let chains = story.roles.iter().map(|role| Chain::new(role, &story.clips, &clips)).collect::<Result<Vec<_>>>()?;
+    let mut chains =
+        story.roles.iter().map(|role| Chain::new(role, &story.clips, &clips)).collect::<Result<Vec<_>>>()?;
     let people = chains.len();
     let props = prop::find(&story, &chains)?;
+    carried::lead(&story, &props, &mut chains)?;
     let mut ties = solve::ties(&story, &chains)?;
     let (story, mut chains) = prop::tie(&story, chains, &props, &mut ties)?;
     let solved = solve::solve(&story, &chains, &ties)?;

@@ -7,7 +7,7 @@ use glam::{Quat, Vec2, Vec3};
 use super::chain::Chain;
 use super::clip::Grasp;
 use super::solve::{Solved, Tie};
-use super::story::{Composition, Prop, Role, Use, bad};
+use super::story::{Composition, Moment, Prop, Role, Use, bad};
 use crate::Result;
 use crate::deform::Bond;
 use crate::geom::{Ground, Upright};
@@ -23,10 +23,10 @@ const APART: f32 = 0.1;
 
 /// A box of a composition: what it is, and who has it from when to when (frames of the role's motion).
 pub(super) struct Found {
-    size: [f32; 3],
-    grip: [f32; 2],
+    pub size: [f32; 3],
+    pub grip: [f32; 2],
     /// Who holds it (or sits on it), in order: role, grasp, how they look against the one before.
-    uses: Vec<(usize, Grasp, f32)>,
+    pub uses: Vec<(usize, Grasp, f32)>,
     line: usize,
     name: String,
 }
@@ -56,10 +56,11 @@ fn found(prop: &Prop, story: &Composition, chains: &[Chain], free: &mut [Vec<Opt
         let (role, (first, last)) = (used.who.role, chains[used.who.role].span(&used.who));
         let fits = |g: &Grasp| g.sits == sits && g.span[0] < last && first < g.span[1];
         let taken = free[role].iter_mut().find(|g| g.is_some_and(fits)).and_then(Option::take).cloned();
-        let grasp = match (taken, &used.span) {
-            (taken, Some(_)) => given(prop, used, chains, taken)?,
-            (Some(taken), None) => taken,
-            (None, None) => {
+        let dated = used.span.iter().any(Option::is_some) || !used.carried.is_empty();
+        let grasp = match taken {
+            taken if dated => given(prop, used, chains, taken)?,
+            Some(taken) => taken,
+            None => {
                 let verb = if sits { "sits on" } else { "holds" };
                 let name = &story.roles[role].name;
                 let problem =
@@ -83,11 +84,15 @@ fn found(prop: &Prop, story: &Composition, chains: &[Chain], free: &mut [Vec<Opt
 /// A hold that the file dates.
 fn given(prop: &Prop, used: &Use, chains: &[Chain], taken: Option<Grasp>) -> Result<Grasp> {
     let chain = &chains[used.who.role];
-    let frames = used.span.iter().flatten().map(|m| chain.frame(m, prop.line)).collect::<Result<Vec<_>>>()?;
-    let [first, last] = frames[..] else { unreachable!("both ends are given") };
+    let (first, last) = chain.span(&used.who);
+    let end = |moment: &Option<Moment>, own| moment.as_ref().map_or(Ok(own), |m| chain.frame(m, prop.line));
+    let (first, last) = (end(&used.span[0], first)?, end(&used.span[1], last)?);
     let fail = |problem: &str| Err(bad(prop.line, format!("prop {}: '{}': {problem}", prop.name, used.who.text)));
     if first >= last {
         return fail("expected to begin before it ends");
+    }
+    if taken.is_some() && !used.carried.is_empty() {
+        return fail("expected clips of somebody who knows of no box where it is carried, found one in the hands");
     }
     let (size, grip) = match (&taken, prop.size) {
         (Some(own), _) => (own.size, own.grip),
@@ -95,10 +100,9 @@ fn given(prop: &Prop, used: &Use, chains: &[Chain], taken: Option<Grasp>) -> Res
         (None, None) => return fail("expected the box's size, since no clip says it; found none"),
     };
     let end = chain.motion.len() - 1;
-    let source = ([usize::MAX; 2], [first, last]);
     let seat = taken.as_ref().map_or(0.0, |t| t.seat);
     let whole = [first > 0, last < end];
-    Ok(Grasp { sits: prop.held.is_empty(), size, grip, seat, span: [first, last], whole, source })
+    Ok(Grasp { sits: prop.held.is_empty(), size, grip, seat, span: [first, last], whole, source: None })
 }
 
 /// Where a grasped box is at a frame of a motion, seen from its path, and the height of its middle; on the ground where
@@ -193,14 +197,15 @@ impl Knots<'_> {
 
 /// Both have the box in their hands at one moment and in one place: in the middle of the time that they share.
 fn pass(chains: &[Chain], found: &Found, (a, from): Holder, (b, to): Holder, turned: Ground) -> Bond {
-    let ((take, [_, end]), (other, [begin, _])) = (from.source, to.source);
-    let together = if take == other && begin < end { end - begin } else { PASS_FRAMES as usize };
+    let captured = from.source.zip(to.source).filter(|(given, taken)| given.0 == taken.0);
+    let shared = captured.map_or(0, |((_, [_, end]), (_, [begin, _]))| end.saturating_sub(begin));
+    let together = if shared > 0 { shared } else { PASS_FRAMES as usize };
     let together = together.min(from.span[1] - from.span[0]).min(to.span[1] - to.span[0]);
     let frames = [from.span[1] - together / 2, to.span[0] + (together - together / 2)];
     let [given, taken] =
         [(a, frames[0], from), (b, frames[1], to)].map(|(r, f, g)| seen(&chains[r].motion, f, g, found).0);
     // Captured together they are as captured.
-    let turn = if take == other { Ground::new(Vec2::ZERO, PI) } else { turned };
+    let turn = if captured.is_some() { Ground::new(Vec2::ZERO, PI) } else { turned };
     Bond { a: (a, frames[0]), b: (b, frames[1]), a_from_b: given.then(turn).then(taken.inverse()) }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::story::{Composition, Moment, Place, Prop, Role, Touches, Use};
+use super::story::{Carried, Composition, Moment, Place, Prop, Role, Touches, Use};
 use crate::geom::Ground;
 
 /// What a compose file's `row` says.
@@ -49,8 +49,9 @@ pub(super) fn lay_out(story: &Composition, row: &Row) -> Composition {
         let used = |p: &&Prop| p.held.iter().chain(&p.sat).all(|u| inside(u.who.role));
         out.props.extend(story.props.iter().filter(used).map(|p| {
             let own = |u: &Use| {
-                let span = u.span.as_ref().map(|s| s.each_ref().map(moved));
-                Use { who: moved(&u.who), span, turn: u.turn }
+                let span = u.span.each_ref().map(|m| m.as_ref().map(moved));
+                let carried = u.carried.iter().map(|c| Carried { at: moved(&c.at), ..*c }).collect();
+                Use { who: moved(&u.who), span, turn: u.turn, carried }
             };
             let [held, sat] = [&p.held, &p.sat].map(|all| all.iter().map(own).collect());
             Prop { name: format!("{}-{}", p.name, copy + 1), held, sat, ..p.clone() }

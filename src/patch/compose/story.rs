@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::deform::Limits;
 use crate::geom::Ground;
-use crate::motion::BodyPart;
+use crate::motion::{BodyPart, Foot};
 
 /// A composition: rows are laid out, names are indices.
 #[derive(Clone, Debug)]
@@ -23,6 +23,8 @@ pub(super) struct Composition {
 pub(super) struct Clip {
     pub name: String,
     pub piece: Piece,
+    /// The arm of which the other is to be the mirror image, if any.
+    pub arms: Option<Foot>,
     /// Whether it is seen in a mirror.
     pub mirror: bool,
     /// Whether it ends in the pose in which it begins.
@@ -102,10 +104,22 @@ pub(super) struct Prop {
 #[derive(Clone, Debug)]
 pub(super) struct Use {
     pub who: Moment,
-    /// From when to when, where the clip does not say it.
-    pub span: Option<[Moment; 2]>,
+    /// From when to when, where the clip does not say it; a carried box's end that is left out is the clip's.
+    pub span: [Option<Moment>; 2],
     /// How they look against the one before, radians.
     pub turn: f32,
+    /// Where they have it at some moments, in order, where the clips know of no box; else empty.
+    pub carried: Vec<Carried>,
+}
+
+/// Where somebody has a box at a moment, seen from the person.
+#[derive(Clone, Debug)]
+pub(super) struct Carried {
+    pub at: Moment,
+    /// Its middle above the ground, metres.
+    pub up: f32,
+    /// Its middle ahead of the hips, metres.
+    pub ahead: f32,
 }
 
 /// A problem at a line of the file.

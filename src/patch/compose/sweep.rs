@@ -31,11 +31,11 @@ pub(super) fn sweep(clip: &Clip, motion: Motion, limits: &Limits) -> Result<Moti
         let expected = format!("expected an end within {most:.2} {unit} of where it {what}");
         Err(bad(clip.line, format!("clip {}: {expected}, found {found:.2} {unit}", clip.name)))
     };
-    if gap.length() > limits.stretch * frames {
-        return refused("leads", limits.stretch * frames, "m", gap.length());
-    }
     if turn.abs() > limits.bend * frames {
         return refused("turns to", (limits.bend * frames).to_degrees(), "deg", turn.abs().to_degrees());
+    }
+    if gap.length() > limits.stretch * frames {
+        return refused("leads", limits.stretch * frames, "m", gap.length());
     }
     points.iter_mut().enumerate().for_each(|(i, p)| *p += gap * (i as f32 / frames));
     let headings = path.headings.iter().enumerate().map(|(i, h)| h + turn * (i as f32 / frames)).collect();

@@ -13,7 +13,7 @@ use super::story::{Clip, Composition, Piece, Place, Role, Touches, bad};
 use crate::Result;
 use crate::deform::Limits;
 use crate::geom::Ground;
-use crate::motion::BodyPart;
+use crate::motion::{BodyPart, Foot};
 
 /// Largest number of people, after rows are laid out.
 pub(super) const MOST_PEOPLE: usize = 64;
@@ -51,6 +51,7 @@ struct ClipText {
     to: Option<f32>,
     patch: Option<String>,
     role: Option<usize>,
+    arms: Option<Foot>,
     #[serde(default)]
     mirror: bool,
     #[serde(default, rename = "loop")]
@@ -204,7 +205,7 @@ impl Reader<'_> {
                 Some(Ground::new(Vec2::new(left, ahead), turn_deg.to_radians()))
             }
         };
-        let (mirror, looped) = (text.mirror, text.looped);
+        let (arms, mirror, looped) = (text.arms, text.mirror, text.looped);
         let piece = match text {
             ClipText { take: Some(take), patch: None, role: None, person, from, to, .. } => {
                 Piece::Take { name: take, person: person.unwrap_or(0), from, to }
@@ -217,7 +218,7 @@ impl Reader<'_> {
                 return Err(bad(line, format!("clip {name}: {expected}, found another mixture")));
             }
         };
-        Ok(Clip { name, piece, mirror, looped, end, line })
+        Ok(Clip { name, piece, arms, mirror, looped, end, line })
     }
 
     fn role(&self, role: Spanned<RoleText>, clips: &[Clip]) -> Result<Role> {
