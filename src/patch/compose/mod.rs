@@ -38,11 +38,12 @@
 //! A moment is `"ann@1.2"` (seconds since ann's first clip began) or `"ann.bow@0.2"` (since the bow began); without
 //! seconds a place holds all through the clip. Two moments in one place happen at one time.
 //!
-//! Clips are joined at ports of one pose group (`chain`), everybody is placed, and what is still to hold bends paths and
-//! times by the least squares of [`crate::deform::Web`] (`solve`). A clip that is to end somewhere
-//! gets there evenly (`sweep`). Boxes tie people together as well (`prop`): who passes a box stands where both have it in their hands, who takes it up where it was put down; while it rests it is solved for as
-//! if it were somebody standing there. Where the clips know of none, arms are led onto it first (`carried`), and ports with
-//! it in the hands are those of people who carry.
+//! Clips are joined at ports of one pose group (`chain`), everybody is placed, and what is still to hold bends paths
+//! and times by the least squares of [`crate::deform::Web`] (`solve`). A clip that is to end somewhere gets there
+//! evenly (`sweep`). Boxes tie people together as well (`prop`): who passes a box stands where both have it in their
+//! hands, who takes it up where it was put down; while it rests it is solved for as if it were somebody standing
+//! there. Where the clips know of none, arms are led onto it first (`carried`), and ports with it in the hands are
+//! those of people who carry.
 
 mod carried;
 mod chain;
