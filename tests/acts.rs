@@ -56,13 +56,13 @@ fn people_of_captures_carry_sit_bow_and_hop() {
         }
     }
 
-    for (scene, least) in [("boxes", "carry"), ("keyframing", "staged"), ("hopping", "bump")] {
+    for (scene, label, least) in [("boxes", "carry", 100), ("keyframing", "staged", 3), ("hopping", "bump", 2)] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/scenes/{scene}.toml"));
         let outcome = tile(&Scene::load(&path).unwrap(), &set, &Options::default(), &mut |_| true).unwrap();
         assert_eq!(outcome.status, Status::Perfect, "{scene}");
         let report = check(&outcome.crowd);
         assert!(report.ok(), "{scene}\n{report}");
         let kinds = outcome.crowd.instances.iter().map(|i| &outcome.crowd.set.kinds[i.kind as usize]);
-        assert!(kinds.filter(|k| k.labels.iter().any(|l| l == least)).count() >= 3, "{scene}");
+        assert!(kinds.filter(|k| k.labels.iter().any(|l| l == label)).count() >= least, "{scene}");
     }
 }
