@@ -32,7 +32,7 @@ pub enum Sources {
 /// patches begin and end. `captures` is a folder that captures are looked up in first. `threshold` is how near two poses
 /// of a group are (m), `groups` how many groups there are at most, `alone` how many patches of one person are kept,
 /// `touch_gap` how near surfaces touch (m), `near` how near people react to each other (m). `compose` are files
-/// (`*.compose.toml`) that compose patches by hand, or folders of them, besides those in the source folder. Unless `study` is
+/// (`*.compose.toml`) that compose patches by hand, or folders of them, besides those in the source folders. Unless `study` is
 /// False, how people come to patches, go on and part is found out too (see `PatchSet.study`). `progress` is called with what is being done and how much of it (0 to 1); it stops the work by returning False.
 #[pyfunction]
 #[pyo3(signature = (source, captures=None, *, threshold=None, groups=None, alone=None, touch_gap=None, near=None, compose=None, study=true, progress=None))]

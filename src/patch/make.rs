@@ -24,7 +24,7 @@ pub struct MakeOptions {
     pub cut: CutOptions,
     /// How takes without patches are annotated.
     pub annotate: AnnotateOptions,
-    /// Compose files (`*.compose.toml`), or folders of them, besides those in the collection's own folder.
+    /// Compose files (`*.compose.toml`), or folders of them, besides those in the collections' own folders.
     pub compose: Vec<PathBuf>,
 }
 
